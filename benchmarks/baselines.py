@@ -243,7 +243,8 @@ def train_ours(task: str, algorithm: str, seed: int, problem: Problem, curve: Cu
     kind = {"ppo": _PPO, "td3": _TD3}[algorithm]
     with TemporaryDirectory() as folder:
         kind(settings, problem, RunFolder(Path(folder), settings, False), RunClock(), None).spend(curve)
-    return settings.model_dump(mode="json", exclude_defaults=True, exclude={"task", "seed", "tensorboard"})
+    said_elsewhere = {"task", "seed", "tensorboard", "environment"}
+    return settings.model_dump(mode="json", exclude_defaults=True, exclude=said_elsewhere)
 
 
 def train_sb3(

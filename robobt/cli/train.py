@@ -168,7 +168,7 @@ def demonstrations(
     Keys of --json: task, file, episodes, steps, success (share), mean_time (seconds).
     """
     from robobt.learning.training.demonstrations import record
-    from robobt.learning.training.settings import environment_of, load_settings
+    from robobt.learning.training.settings import load_settings
     from robobt.learning.training.teachers import TEACHERS
 
     if by not in TEACHERS:
@@ -176,7 +176,7 @@ def demonstrations(
     given = {
         f"environment.{name}": value for name, value in parse_assignments(changes or [], "--set").items()
     }
-    environment = environment_of(load_settings(task, "fast", given))
+    environment = load_settings(task, "fast", given).environment
     make_folders({"--out": out})
     with Progress(f"recording {task}", episodes) as progress:
         recorded = record(environment, episodes, by, seed, lambda _: progress.advance())

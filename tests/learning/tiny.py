@@ -13,7 +13,7 @@ from robobt.learning.agents.settings import AgentSettings
 from robobt.learning.envs import StepResult
 from robobt.learning.training.evaluation import Evaluation
 from robobt.learning.training.problems import Problem, split_seed
-from robobt.learning.training.settings import TrainSettings
+from robobt.learning.training.settings import TrainSettings, settings_of
 
 torch.set_num_threads(1)
 
@@ -79,7 +79,7 @@ SLIDE = Problem(Slide, _evaluate, (1.0, 1.0), (True,))
 def slide_settings(**changes) -> TrainSettings:
     """A run of a second or less."""
     data = {
-        "task": "slide",
+        "task": "go_to_ball",  # runs need the name of a task; what is learned is given as a problem
         "steps": 1920,
         "agent": {
             "hidden_sizes": (32,),
@@ -105,7 +105,7 @@ def slide_settings(**changes) -> TrainSettings:
     for name, value in changes.items():
         group, _, key = name.rpartition("__")
         (data[group] if group else data)[key] = value
-    return TrainSettings.model_validate(data)
+    return settings_of(data, "tiny")
 
 
 def draw_no_curves(monkeypatch: pytest.MonkeyPatch) -> None:

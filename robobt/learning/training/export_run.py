@@ -19,7 +19,7 @@ from robobt.learning.training.evaluation import Evaluation
 from robobt.learning.training.problems import problem_of
 from robobt.learning.training.results import TrainResult
 from robobt.learning.training.run_folder import RESULT, load_run
-from robobt.learning.training.settings import environment_of, evaluated_on
+from robobt.learning.training.settings import evaluated_on
 from robobt.models.card import MODEL_NAME, Measured, ModelCard, ObservationCard, action_outputs
 from robobt.models.export import export_model, refuse_to_replace
 from robobt.models.file import SUFFIXES, Format, ModelError
@@ -64,7 +64,7 @@ def export_run(
     called = name or f"{settings.task.rpartition(':')[2]}_{settings.learner}"
     for format_ in formats:
         refuse_to_replace(Path(folder) / f"{called}{SUFFIXES[format_]}", force)
-    environment = environment_of(settings, str(run))
+    environment = settings.environment
     count = settings.evaluation.held_out if starts is None else starts
     with one_thread():
         figures = problem_of(environment, evaluated_on(settings, str(run))).evaluate(
@@ -86,7 +86,7 @@ def export_run(
         action=environment.action,
         period=environment.period * environment.decide_every,
         limits=environment.robot_limits,
-        environment=settings.environment,
+        environment=environment.model_dump(mode="json"),
         training=_training(result),
         seed=settings.seed,
         held_out=held_out(figures),

@@ -22,7 +22,6 @@ from robobt.learning.envs.task import FloatArray
 from robobt.learning.opponents.play_settings import PlaySettings
 from robobt.learning.training.run_folder import ACTOR, PAST, load_actor, read_settings
 from robobt.learning.training.setting_groups import Script
-from robobt.learning.training.settings import environment_of
 
 _ARENAS = 128
 """Arenas side by side in an encounter."""
@@ -93,7 +92,7 @@ def contenders_of(folder: Path, past: int, name: str = "") -> tuple[SoccerSettin
         MeetingError: it is no run of two teams that learn, or has no policies yet.
     """
     settings = read_settings(folder)
-    environment = environment_of(settings, str(folder))
+    environment = settings.environment
     if not isinstance(environment, SoccerSettings) or not environment.two_alike:
         raise MeetingError(f"{folder}: {settings.task} is not a task whose two teams learn")
     files = sorted((folder / PAST).glob("*.pt"))

@@ -15,7 +15,7 @@ from robobt.learning.training.problems import Problem
 from robobt.learning.training.progress import OnProgress
 from robobt.learning.training.run import Run, TrainError, part
 from robobt.learning.training.run_folder import RunFolder
-from robobt.learning.training.settings import TrainSettings, environment_of
+from robobt.learning.training.settings import TrainSettings
 
 
 class OffPolicyRun(Run):
@@ -90,7 +90,7 @@ class OffPolicyRun(Run):
         settings = self._settings.replay.demonstrations
         if not settings.episodes:
             return
-        environment = environment_of(self._settings)
+        environment = self._settings.environment
         shown = demonstrations_for(environment, settings.episodes, settings.file, self._settings.seed)
         for transitions in shown.transitions(self._horizons, self._settings.agent.gamma):
             self._replay.add(*transitions)

@@ -15,7 +15,7 @@ from robobt.learning.training.problems import Problem
 from robobt.learning.training.progress import OnProgress
 from robobt.learning.training.run import Run, TrainError, part
 from robobt.learning.training.run_folder import ACTOR, RunFolder, load_actor, read_settings
-from robobt.learning.training.settings import TrainSettings, environment_of
+from robobt.learning.training.settings import TrainSettings
 
 
 class OnPolicyRun(Run):
@@ -132,4 +132,4 @@ class OnPolicyRun(Run):
 
 def _seen(settings: TrainSettings) -> list[str]:
     """Return the names of the observation's entries in such a run."""
-    return [entry.name for entry in make_task(environment_of(settings), 1).observation.entries]
+    return [entry.name for entry in make_task(settings.environment, 1).observation.entries]

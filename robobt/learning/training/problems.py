@@ -15,7 +15,6 @@ from robobt.learning.training.arenas import arenas_of, opposed_arenas, shares_of
 from robobt.learning.training.evaluation import Evaluation, Policy
 from robobt.learning.training.settings import (
     TrainSettings,
-    environment_of,
     evaluated_on,
     stage_after,
     stages_of,
@@ -63,7 +62,7 @@ class Problem:
 def problem_for(settings: TrainSettings) -> Problem:
     """Return the task of a run."""
     problem = problem_of(
-        environment_of(settings),
+        settings.environment,
         evaluated_on(settings),
         worlds_of(settings),
         settings.central,
@@ -77,7 +76,7 @@ def problem_for(settings: TrainSettings) -> Problem:
         stage = stages[stage_after(settings, steps)]
         if stage.worlds:
             return arenas_of(worlds_of(stage), n, settings.central)
-        return opposed_arenas(environment_of(stage), stage.pool, others, n, settings.central)
+        return opposed_arenas(stage.environment, stage.pool, others, n, settings.central)
 
     return replace(problem, later=later)
 

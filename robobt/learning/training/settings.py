@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any, Literal, Self, TypeVar
 
-from pydantic import BaseModel, Field, ValidationError, model_validator
+from pydantic import BaseModel, Field, SerializeAsAny, ValidationError, model_validator
 
 from robobt.config.validation import Settings, first_problem
 from robobt.learning.agents.settings import AgentSettings, PPOSettings
@@ -33,7 +33,9 @@ class TrainSettings(Settings):
     preset: str = Field("", description="name or file of the preset that these settings come from")
     seed: int = Field(0, ge=0, le=2**53 - 1, description="of all random numbers of the run")
     steps: int = Field(description="total environment steps", ge=1, le=1_000_000_000)
-    environment: dict[str, Any] = Field(default_factory=dict, description="changes to the task's settings")
+    environment: SerializeAsAny[TaskSettings] = Field(
+        default_factory=TaskSettings, description="changes to the task's settings, which are kept in full"
+    )
     worlds: tuple[dict[str, Any], ...] = Field(
         (),
         max_length=64,
@@ -136,7 +138,7 @@ def load_settings(
     if changes:
         source = f"{source}, with {', '.join(changes)} changed"
     settings = settings_of(data, source)
-    environment = environment_of(settings, source)
+    environment = settings.environment
     try:
         arenas = make_task(environment, 1)
     except Exception as error:
@@ -156,22 +158,20 @@ def load_settings(
         _check_pool(stage, environment, source)
     for found in (*validated_on(settings, source), evaluated_on(settings, source)):
         _check_rows(settings, environment, found, source, "evaluation")
-    # Written out in full, so that a default that changes later does not change this run.
-    return settings.model_copy(update={"environment": environment.model_dump(mode="json")})
+    return settings
 
 
 def settings_of(data: Mapping[str, Any], source: str) -> TrainSettings:
-    """Validate plain data, but for the task's environment.
+    """Validate plain data.
 
     Raises:
         SettingsError: the message begins with ``source`` and names the field.
     """
-    return _validated(TrainSettings, dict(data), source, "")
-
-
-def environment_of(settings: TrainSettings, source: str = "settings") -> TaskSettings:
-    """Return the environment's settings."""
-    return _validated(_model(settings.task, source), settings.environment, source, "environment")
+    plain = dict(data)
+    if isinstance(plain.get("task"), str):
+        model = _model(plain["task"], source)
+        plain["environment"] = _validated(model, plain.get("environment", {}), source, "environment")
+    return _validated(TrainSettings, plain, source, "")
 
 
 def _model(task: str, source: str) -> type[TaskSettings]:
@@ -181,19 +181,23 @@ def _model(task: str, source: str) -> type[TaskSettings]:
         raise SettingsError(source, str(error.args[0]), "task") from error
 
 
+def _with(settings: TrainSettings, source: str, place: str, *changes: Mapping[str, Any]) -> TaskSettings:
+    """Return the run's environment with changes, which ``place`` names in an error."""
+    data = settings.environment.model_dump(mode="json")
+    for each in changes:
+        data = merged(data, each)
+    return _validated(type(settings.environment), data, source, f"environment with {place}")
+
+
 def evaluated_on(settings: TrainSettings, source: str = "settings") -> TaskSettings:
     """Return the settings of the environment in which the held-out starts are played."""
-    data = merged(settings.environment, settings.evaluation.environment)
-    data = merged(data, settings.evaluation.held_out_environment)
-    return _validated(
-        _model(settings.task, source), data, source, "environment with evaluation.held_out_environment"
-    )
+    changes = settings.evaluation.environment, settings.evaluation.held_out_environment
+    return _with(settings, source, "evaluation.held_out_environment", *changes)
 
 
 def validated_on(settings: TrainSettings, source: str = "settings") -> tuple[TaskSettings, ...]:
     """Return the settings of each world in which validation starts are played."""
-    changes = [merged(world, settings.evaluation.environment) for world in settings.worlds or ({},)]
-    return worlds_of(settings.model_copy(update={"worlds": tuple(changes)}), source)
+    return worlds_of(settings, source, settings.evaluation.environment)
 
 
 def stages_of(settings: TrainSettings, source: str = "settings") -> tuple[TrainSettings, ...]:
@@ -201,7 +205,7 @@ def stages_of(settings: TrainSettings, source: str = "settings") -> tuple[TrainS
     return tuple(
         settings.model_copy(
             update={
-                "environment": merged(settings.environment, stage.environment),
+                "environment": _with(settings, source, f"stages[{index}]", stage.environment),
                 "pool": _validated(
                     PoolSettings,
                     merged(settings.pool.model_dump(), stage.pool),
@@ -251,19 +255,23 @@ def _check_pool(stage: TrainSettings, environment: TaskSettings, source: str) ->
     if stage.pool.every % stage.rebuild_every:
         problem = f"must be a multiple of rebuild_every ({stage.rebuild_every})"
         raise SettingsError(source, problem, "pool.every")
-    own, n = environment_of(stage, source), stage.collection.num_envs
+    own, n = stage.environment, stage.collection.num_envs
     if isinstance(own, SoccerSettings) and own.two_alike:
         counts = opposed(own, stage.pool, n)
         if any(share and not count for share, count in zip(stage.pool.shares, counts, strict=True)):
             raise SettingsError(source, f"{n} learners are too few for an arena of each share", "pool")
 
 
-def worlds_of(settings: TrainSettings, source: str = "settings") -> tuple[TaskSettings, ...]:
-    """Return the settings of each world that the run trains in; without others, of the environment."""
-    model, data = _model(settings.task, source), settings.environment
+def worlds_of(
+    settings: TrainSettings, source: str = "settings", changes: Mapping[str, Any] | None = None
+) -> tuple[TaskSettings, ...]:
+    """Return the settings of each world that the run trains in, with ``changes`` to each.
+
+    Without other worlds that is the environment.
+    """
     return tuple(
-        _validated(model, merged(data, changes), source, f"environment with worlds[{index}]")
-        for index, changes in enumerate(settings.worlds or ({},))
+        _with(settings, source, f"worlds[{index}]", world, changes or {})
+        for index, world in enumerate(settings.worlds or ({},))
     )
 
 

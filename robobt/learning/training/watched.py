@@ -12,7 +12,7 @@ import numpy as np
 from robobt.learning.envs import ArenaTask, make_task
 from robobt.learning.training.evaluation import Evaluation, Policy
 from robobt.learning.training.problems import Problem, Split, problem_for, split_seed
-from robobt.learning.training.settings import TrainSettings, environment_of
+from robobt.learning.training.settings import TrainSettings
 from robobt.live.controls import Controls
 from robobt.live.server import Server
 from robobt.live.stream import Stream
@@ -55,7 +55,7 @@ class _Shows:
 
     def play(self, policy: Policy, split: Split, figures: str) -> None:
         """Play a policy from some starts, at the viewers' speed."""
-        task = make_task(environment_of(self._settings), 1)
+        task = make_task(self._settings.environment, 1)
         capture = Capture(_header_of(task, f"{self._settings.task}: {figures}"))
         self._server.show(Stream(capture))
         period = task.settings.period * task.settings.decide_every

@@ -51,9 +51,9 @@ def test_the_card_tells_the_whole_run(run: Path, tmp_path: Path) -> None:
     assert path == tmp_path / f"{task}_ddpg.pt"
     assert card.skill == {"go_to_ball": "GoToBall", "shoot": "Shoot"}[task]
     assert card.observation.name == task
-    assert card.environment == result.settings.environment
+    assert card.environment == result.settings.environment.model_dump(mode="json")
     assert card.action is not None
-    assert card.action.model_dump() == result.settings.environment["action"]
+    assert card.action == result.settings.environment.action
     assert card.period == 0.025
     assert card.limits is not None
     assert card.limits.max_speed == 5.0

@@ -16,9 +16,8 @@ from robobt.learning.training.setting_groups import (
 )
 from robobt.learning.training.settings import (
     SettingsError,
-    TrainSettings,
-    environment_of,
     load_settings,
+    settings_of,
 )
 
 ALL = [(task, preset) for task in TASKS for preset in presets(task)]
@@ -29,7 +28,7 @@ def test_every_shipped_preset_is_valid(task, preset):
     settings = load_settings(task, preset)
     assert settings.task == task
     assert settings.preset == preset
-    assert isinstance(environment_of(settings), TASKS[task].Settings)
+    assert isinstance(settings.environment, TASKS[task].Settings)
 
 
 PAPERS = ("go_to_ball", "shoot")
@@ -102,8 +101,8 @@ def test_a_preset_may_be_a_file_that_extends_another(tmp_path):
 def test_settings_survive_being_written_and_read():
     settings = load_settings("shoot", "ddpgfd", {"environment.simulator": "robobulls"})
     text = write_yaml(settings.model_dump(mode="json"))
-    assert TrainSettings.model_validate(parse_marked(text, "yaml").plain()) == settings
-    assert environment_of(settings).simulator.dribbler.kind == "glue"
+    assert settings_of(parse_marked(text, "yaml").plain(), "text") == settings
+    assert settings.environment.simulator.dribbler.kind == "glue"
 
 
 @pytest.mark.parametrize(

@@ -14,7 +14,7 @@ from robobt.learning.envs.soccer.task import SoccerTask
 from robobt.learning.training.export_run import export_run
 from robobt.learning.training.problems import problem_for, problem_of
 from robobt.learning.training.run_folder import load_run
-from robobt.learning.training.settings import SettingsError, environment_of, load_settings
+from robobt.learning.training.settings import SettingsError, load_settings
 from robobt.learning.training.train import train
 from robobt.models.file import read_model_file
 from robobt.skills import Duel, Goalkeeper, LearnedSkill, Score
@@ -92,7 +92,7 @@ def test_one_policy_decides_for_every_learner() -> None:
 
 
 def test_a_problem_has_a_row_for_each_learner() -> None:
-    environment = environment_of(load_settings("attack3v2"))
+    environment = load_settings("attack3v2").environment
     problem = problem_of(environment)
     made = problem.make(6)
     assert isinstance(made, PerRobot)

@@ -15,7 +15,7 @@ from robobt.learning import TASKS
 from robobt.learning.training import checkpoint
 from robobt.learning.training.problems import problem_of, split_seed, training_seed
 from robobt.learning.training.run_folder import CHECKPOINT, RunFolderError, load_actor, load_run
-from robobt.learning.training.settings import environment_of, evaluated_on, load_settings
+from robobt.learning.training.settings import evaluated_on, load_settings
 from robobt.learning.training.train import TrainError, train
 from tests.learning.tiny import SLIDE, Slide, slide_settings
 
@@ -364,7 +364,7 @@ def test_a_short_run_of_a_real_task(tmp_path, task):
         "rebuild_every": 640,
     }
     result = train(load_settings(task, changes=changes), tmp_path)
-    assert result.settings.environment["period"] == 0.03
+    assert result.settings.environment.period == 0.03
     assert result.figures["updates"] == 2 * (1280 - 128) // 64
     assert 0 <= result.figures["held_out"]["successes"] <= 10
     again = load_run(tmp_path)
@@ -396,7 +396,7 @@ def test_a_run_against_opponents_is_resumed_bit_for_bit(tmp_path):
     }
     settings = load_settings("score_on_goalkeeper", changes=changes)
     whole = train(settings, tmp_path / "whole")
-    problem = problem_of(environment_of(settings), evaluated_on(settings))
+    problem = problem_of(settings.environment, evaluated_on(settings))
 
     def dying(n):
         task, left = problem.make(n), iter(range(45))
@@ -426,7 +426,7 @@ def test_nine_of_ten_succeed_after_a_short_training(tmp_path, task, steps):
 
 REAL = """
 import sys
-from robobt.learning.training.settings import environment_of, evaluated_on, load_settings
+from robobt.learning.training.settings import evaluated_on, load_settings
 from robobt.learning.training.train import train
 changes = {"steps": 38400, "collection.random_steps": 2560, "evaluation.every": 9600, "evaluation.starts": 20,
            "evaluation.held_out": 20, "rebuild_every": 640, "checkpoint_seconds": 0.0, "tensorboard": False}

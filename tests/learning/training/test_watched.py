@@ -9,7 +9,7 @@ import pytest
 from robobt.learning.training import watched
 from robobt.learning.training.evaluation import FloatArray
 from robobt.learning.training.problems import problem_of
-from robobt.learning.training.settings import environment_of, load_settings
+from robobt.learning.training.settings import load_settings
 from robobt.live.messages import Speed
 from robobt.live.server import Server
 from robobt.live.stream import Stream
@@ -26,7 +26,7 @@ def test_an_evaluation_is_shown_to_who_watches_and_is_the_same(monkeypatch: pyte
     monkeypatch.setattr(watched, "SHOWN", 1)
     server = Server()
     problem = watched.watched_problem(server, settings)
-    alone = problem_of(environment_of(settings)).evaluate(ahead, "validation", 4)
+    alone = problem_of(settings.environment).evaluate(ahead, "validation", 4)
     assert problem.evaluate(ahead, "validation", 4).times.tolist() == alone.times.tolist()
     assert server.audience.stream is None
     watching: Any = {1: object()}
