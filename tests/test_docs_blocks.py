@@ -35,6 +35,7 @@ from robobt.tournament.entrants import EntrantFile, read_entrant
 from robobt.tournament.plan import Plan
 from robobt.tree import Selector, Status, TreeRunner
 from robobt.tree.devtools.substitution import substitutions
+from robobt.world.observation import OWN_OBSERVATIONS
 from tests.models.made_models import (
     Onward,
     Passing,
@@ -274,6 +275,7 @@ def own_plays() -> Mapping[str, object]:
 
 
 def own_task() -> Mapping[str, object]:
+    OWN_OBSERVATIONS.clear()  # the page's own, of the test of its Python
     Path("my_task.py").write_text(blocks("own_tasks", "python")[0])
     Path("my_play.yaml").write_text(blocks("own_tasks", "yaml")[0])
     return {}

@@ -11,16 +11,11 @@ from numpy.typing import NDArray
 
 from robobt.world.field import FieldGeometry
 from robobt.world.geometry import FloatArray
+from robobt.world.records import BALL, ROBOT
 from robobt.world.state import Frame, RobotState
 
 Row = FloatArray | tuple[float, ...]
 """Numbers in a fixed order: a robot's x, y, heading, vx, vy, omega or a ball's x, y, vx, vy."""
-
-BODY = np.dtype([(name, "f8") for name in ("x", "y", "heading", "vx", "vy", "omega")])
-"""A robot by the names of its numbers [m, rad, m/s, rad/s]."""
-
-BALL = np.dtype([(name, "f8") for name in ("x", "y", "vx", "vy")])
-"""A ball by the names of its numbers [m, m/s]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,8 +25,9 @@ class Seen:
     The robots' team attacks towards +x.
 
     Attributes:
-        robots: (n, R) records :data:`BODY`: the one that observes, its team-mates, the opponents.
-        balls: (n,) records :data:`BALL`.
+        robots: (n, R) records :data:`~robobt.world.records.ROBOT`: the one that observes, its team-mates,
+            the opponents.
+        balls: (n,) records :data:`~robobt.world.records.BALL`.
         own: how many robots, the first, are of the observer's team.
         field: on which they play.
     """
@@ -65,7 +61,7 @@ class Seen:
 def seen(robots: FloatArray, balls: FloatArray, own: int, field: FieldGeometry) -> Seen:
     """Return arrays (n, R, 6) and (n, 4) by the names of their numbers; the rest is as for :class:`Seen`."""
     bodies, rolling = np.ascontiguousarray(robots), np.ascontiguousarray(balls)
-    return Seen(bodies.view(BODY)[..., 0], rolling.view(BALL)[..., 0], own, field)
+    return Seen(bodies.view(ROBOT)[..., 0], rolling.view(BALL)[..., 0], own, field)
 
 
 @dataclass(frozen=True, slots=True)
