@@ -7,8 +7,8 @@ from dataclasses import is_dataclass
 from enum import Enum
 from itertools import compress, count
 from math import isfinite
-from operator import attrgetter, ne
-from typing import Any, TypeAlias, get_args, get_type_hints
+from operator import ne
+from typing import TypeAlias, get_args, get_type_hints
 
 from pydantic import JsonValue
 
@@ -16,6 +16,7 @@ from robobt.config.errors import text_of
 from robobt.skills.store import GIVEN, Store
 from robobt.tree import TreeRunner
 from robobt.tree.engine import LEAVING
+from robobt.tree.recording import make_reader
 from robobt.world.state import Frame, RobotId
 
 _LONGEST_TEXT = 200
@@ -45,10 +46,8 @@ class StoreWatch:
     def __init__(self, stores: Mapping[str, tuple[object, Sequence[str]]]) -> None:
         self.entries = [(name, entry) for name, (_, entries) in stores.items() for entry in entries]
         self._stores = [stores[name][0] for name, _ in self.entries]
-        # With a second name, the same again, an attrgetter always returns a tuple.
-        self._readers = [
-            (attrgetter(*entries, entries[0]), store) for store, entries in stores.values() if entries
-        ]
+        items = [f"'{place}'.{entry}," for place, (_, entry) in enumerate(self.entries)]
+        self._read = make_reader(f"[{''.join(items)}]", self._stores)
         # As of the last look; of what may be changed in place a copy.
         self._before: list[object] = [None] * len(self.entries)
 
@@ -57,9 +56,7 @@ class StoreWatch:
         before = self._before
         try:
             # All of them at once, which is what they usually are.
-            values: list[Any] = []
-            for read, store in self._readers:
-                values += read(store)[:-1]
+            values = self._read()
             if values == before:
                 return []
             places = [*compress(count(), map(ne, values, before))]
