@@ -6,10 +6,10 @@ from typing import Any
 
 import numpy as np
 import pytest
-from robobt.learning.opponents.goalkeeper import Goalkeepers
 
 from robobt.learning.envs import ScoreOnGoalkeeperSettings, ScoreOnGoalkeeperTask, run_starts
 from robobt.learning.envs.score_on_goalkeeper.rewards import ScoreReward, kicked
+from robobt.learning.opponents.goalkeepers import Goalkeepers
 from robobt.learning.opponents.keepers import KINDS
 from robobt.models.actions import command_of
 from robobt.sim import SimWorld
@@ -92,7 +92,7 @@ def test_the_shipped_goalkeeper_is_the_shipped_goalkeeper() -> None:
     for _ in range(40):
         arenas = made.arenas
         alone.decide(arenas.robots, arenas.balls, arenas.contact, 1, wanted)
-        made._oppose()
+        made.oppose(made._commands)
         np.testing.assert_array_equal(made._commands[theirs, 1, :6], wanted[theirs])
         made._commands[:, 0, :3] = rng.uniform(-1.0, 1.0, (6, 3))
         arenas.step(made._commands)
