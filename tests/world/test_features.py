@@ -191,6 +191,13 @@ def test_who_stands_beyond_the_target_comes_after_who_is_nearer_to_the_way_there
     assert places == [pytest.approx(place) for place in ((2.0, 0.4), (-0.8, 0.0), (4.0, 0.0), (2.0, -3.0))]
 
 
+def test_the_turn_of_a_shot_is_the_short_way_round() -> None:
+    shooter, target = np.array([[0.0, 0.0, -3.0, 0.0, 0.0, 0.0]]), np.array([[-1.0, 0.1]])
+    row = shot_scene(shooter, np.zeros((1, 4)), target, np.empty((1, 0, 6)))[0]
+    names = [entry.name for entry in SHOT_SCENE.entries]
+    assert row[names.index("turn")] == pytest.approx(3.0 - pi - atan2(0.1, 1.0))
+
+
 def test_of_many_opponents_the_nearest_to_the_shot_stay_in_the_scene() -> None:
     far = [(x, -2.0, 0.0, 0.0, 0.0, 0.0) for x in np.linspace(-4.0, 0.0, 7)]
     scene = scene_of([1.0, 1.0, 0.0, 0.0], far + OPPONENTS)
