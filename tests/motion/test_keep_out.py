@@ -65,6 +65,12 @@ def test_a_ball_that_comes_fast_is_near() -> None:
     assert order.vx > -0.5
 
 
+def test_a_ball_that_the_robot_drives_at_fast_is_near() -> None:
+    me = robot(-2.8, 0.0, velocity=(-3.0, 0.0, 0.0))
+    order = keep_out(frame(me, (-3.6, 0.0), game=OPEN), me, RobotCommand(-3.0, 0.0))
+    assert order.vx > -2.0
+
+
 def test_in_a_stop_nothing_is_changed() -> None:
     me = robot(-3.38, 0.0)
     assert keep_out(frame(me, (-3.2, 0.0), game=STOP), me, RobotCommand(-2.0, 0.0)).vx == -2.0
