@@ -28,7 +28,7 @@ from robobt.learning.envs.task import (
     IntArray,
     StepResult,
 )
-from robobt.learning.envs.tick import Tick, call, checked_ends, checked_terms
+from robobt.learning.envs.tick import Tick, call, checked_ends, checked_starts, checked_terms, error_of
 from robobt.models.actions import fill_commands
 from robobt.sim.arenas import Arenas
 from robobt.sim.records import COMMAND, size
@@ -118,6 +118,7 @@ class ArenaTask:
         self._terms: NDArray[np.void] = np.zeros(n, dtype=self.terms)
         judged_by = next(kind for kind in type(self).__mro__ if "_judge" in vars(kind))
         self._own_reward = type(self).reward is not judged_by.__dict__.get("reward", ArenaTask.reward)
+        self._own_opponents = not type(self).oppose.__module__.startswith("robobt.")
         self._own_ends = type(self).ends is not judged_by.__dict__.get("ends", ArenaTask.ends)
 
     def sample(self, rng: np.random.Generator, count: int) -> FloatArray:
@@ -133,6 +134,9 @@ class ArenaTask:
         )
         if made.shape != (len(balls), self.observation.size):
             raise ValueError(f"makes {made.shape} of {(len(balls), self.observation.size)}")
+        if not np.isfinite(made).all():
+            entry = self.observation.entries[int(np.flatnonzero(~np.isfinite(made).all(axis=0))[0])]
+            raise ValueError(f"the entry {entry.name!r} is not finite")
         return made
 
     def reward(self, tick: Tick) -> Mapping[str, FloatArray]:
@@ -280,8 +284,7 @@ class ArenaTask:
 
     def sample_starts(self, seed: int, count: int) -> FloatArray:
         """Sample ``count`` starts (count, S) from a seed of their own; the task's state stays as it is."""
-        drawn: FloatArray = call(self, "sample", np.random.default_rng(seed), count)
-        return drawn
+        return checked_starts(self, len(self.start_columns), np.random.default_rng(seed), count)
 
     def reset(self, seed: int | None = None) -> FloatArray:
         """See :meth:`robobt.learning.envs.task.VectorTask.reset`."""
@@ -351,6 +354,8 @@ class ArenaTask:
         last = self.settings.decide_every - 1
         for tick in range(self.settings.decide_every):
             call(self, "oppose", self._commands)
+            if self._own_opponents and not np.isfinite(self._commands).all():
+                raise error_of(type(self), "oppose", ValueError("a command is not finite"))
             if self._own_reward or self._own_ends:
                 ended = self._step_with_own(given, rewards, ends)
             else:
@@ -431,7 +436,9 @@ class ArenaTask:
         self.arenas = Arenas(
             settings.field, self._robot_limits, settings.stepped_simulator, settings.period, n
         )
-        self._pool = StartPool(partial(call, self, "sample"), self._start_rngs, len(self.start_columns))
+        self._pool = StartPool(
+            partial(checked_starts, self, len(self.start_columns)), self._start_rngs, len(self.start_columns)
+        )
         self._perception = Perception(
             settings, partial(call, self, "observe"), self.observation_size, robots, self._noise_rngs
         )

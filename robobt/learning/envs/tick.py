@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from robobt.config.errors import RobobtError
 from robobt.learning.envs.task import BoolArray, FloatArray
+from robobt.signals import Terminated
 from robobt.world.observation import Seen
 
 
@@ -61,7 +62,9 @@ def call(task: object, part: str, *given: Any) -> Any:
     """
     try:
         return getattr(task, part)(*given)
-    except Exception as error:
+    except Terminated:
+        raise
+    except (Exception, SystemExit) as error:
         if type(task).__module__.startswith("robobt."):
             raise
         raise error_of(type(task), part, error) from error
@@ -74,6 +77,21 @@ def error_of(task: type, part: str, error: BaseException) -> TaskError:
     place = f"{Path(file).name}:{lines[-1]}: " if file and lines else ""
     kind = "" if isinstance(error, ValueError | NotImplementedError) else f"{type(error).__name__}: "
     return TaskError(f"{place}{task.__name__}.{part}: {kind}{error}")
+
+
+def checked_starts(task: object, columns: int, rng: np.random.Generator, count: int) -> FloatArray:
+    """Return ``count`` starts that a task's ``sample`` draws with ``rng``, (count, columns).
+
+    Raises:
+        TaskError: it fails, or what it returns is of another shape or not finite.
+    """
+    rows = call(task, "sample", rng, count)
+    if np.shape(rows) != (count, columns):
+        problem = ValueError(f"returns starts of the shape {np.shape(rows)}, not {(count, columns)}")
+        raise error_of(type(task), "sample", problem)
+    if not np.isfinite(rows).all():
+        raise error_of(type(task), "sample", ValueError("a start is not finite"))
+    return np.asarray(rows, dtype=np.float64)
 
 
 def checked_ends(task: object, tick: Tick, n: int) -> tuple[BoolArray, BoolArray]:
@@ -106,7 +124,13 @@ def checked_terms(task: object, tick: Tick, n: int) -> dict[str, FloatArray]:
         raise error_of(type(task), "reward", problem)
     found = {}
     for name, term in terms.items():
-        numbers = np.asarray(term, dtype=np.float64)
+        if not isinstance(name, str):
+            raise error_of(type(task), "reward", ValueError(f"{name!r} is not a name of a term"))
+        try:
+            numbers = np.asarray(term, dtype=np.float64)
+        except (TypeError, ValueError) as error:
+            problem = ValueError(f"the term {name!r} is no array of numbers")
+            raise error_of(type(task), "reward", problem) from error
         if numbers.shape not in ((), (n,)) or not np.isfinite(numbers).all():
             wrong = (
                 "is not finite"

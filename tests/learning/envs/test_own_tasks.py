@@ -154,7 +154,15 @@ def test_ends_of_a_shipped_task_are_changed_by_one_method() -> None:
         ("1.0 * tick.success", "np.nan", r"Middle\.reward: the term 'there' is not finite"),
         ("< 0.3, tick.goal != 0", "< 0.3", r"Middle\.ends: returns no pair"),
         ("return np.column_stack(", "return np.array(", r"Middle\.observe: makes \(2, 4\) of \(4, 2\)"),
+        ("1.0 * tick.success", "'x'", r"Middle\.reward: the term 'there' is no array of numbers"),
+        ('"there":', "3:", r"Middle\.reward: 3 is not a name of a term"),
+        ("return np.hypot", "raise SystemExit(4); np.hypot", r"own\.py:\d+: Middle\.ends: SystemExit: 4"),
+        ('-seen.me["x"], -', 'seen.me["x"] * np.nan, -', r"Middle\.observe: the entry 'x' is not finite"),
+        ("def ends", "def oppose(self, c): c[:] = np.nan\n\n    def ends", r"Middle\.oppose: a command"),
         ("rows[:, 6] = 3.0", "rows[:, 99] = 3.0", r"own\.py:\d+: Middle\.sample: IndexError"),
+        ("rows[:, 6] = 3.0", "rows[:, 6] = np.nan", r"Middle\.sample: a start is not finite"),
+        ("return rows", "return rows[:1]", r"Middle\.sample: returns starts of the shape \(1, 10\), not"),
+        ("return rows", "pass", r"Middle\.sample: returns starts of the shape \(\), not"),
     ],
 )
 def test_what_is_wrong_in_a_part_is_told_by_line_class_and_part(
