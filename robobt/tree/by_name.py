@@ -10,7 +10,7 @@ from typing import Any
 from pydantic import BaseModel, GetCoreSchemaHandler, ValidationError
 from pydantic_core import CoreSchema, core_schema
 
-from robobt.config.errors import FieldError, message_of
+from robobt.config.errors import FieldError, message_of, short_repr
 from robobt.config.validation import first_problem
 from robobt.tree.registry import Registry
 
@@ -55,10 +55,12 @@ class ByName:
         if not isinstance(value, Mapping):
             return value
         settings = {key: setting for key, setting in value.items() if key != "name"}
-        name = value.get("name")
-        if not isinstance(name, str):
-            example = next(iter(settings), "NAME")
+        if "name" not in value:
+            example = next((key for key in settings if key in self.registry), "NAME")
             raise FieldError("name", f"is missing: write {{name: {example}, SETTING: VALUE}}")
+        name = value["name"]
+        if not isinstance(name, str):
+            raise FieldError("name", f"takes the name of a {self}, not {short_repr(name)}")
         try:
             self.check(name)
         except ValueError as error:

@@ -72,6 +72,8 @@ def test_what_is_made_already_stays_as_it_is() -> None:
         ({"name": "walk", "step": "1.5"}, "gait.step", "valid number"),
         ({"name": "walk", "feet": [1, "x"]}, "gait.feet.1", "valid integer"),
         ({"walk": {"step": 1}}, "gait.name", "write {name: walk, SETTING: VALUE}"),
+        ({"step": 1}, "gait.name", "is missing: write {name: NAME, SETTING: VALUE}"),
+        ({"name": 3, "step": 1}, "gait.name", "takes the name of a gait, not 3"),
         ({"name": "crawl", "step": 1}, "gait.step", "gait crawl has no settings"),
         (3, "gait", "takes the name of a gait, or {name: NAME, SETTING: VALUE}, not 3"),
     ],
