@@ -133,6 +133,8 @@ def load_settings(
     _model(task, "")
     data, source = read_preset(task, preset)
     data = {"task": task, **data, "preset": preset}
+    if "task" in (changes or {}):
+        raise SettingsError(source, f"is what is trained, {task}: name another one instead", "task")
     for name, value in (changes or {}).items():
         assign(data, name.split("."), value, name)
     if changes:

@@ -201,10 +201,8 @@ def defender(
         dribble_speed: top speed with the ball [m/s].
         farthest: largest x of the ball at which it goes for it [m].
     """
-    player, wall = (
-        _Player(rater, min_score, shot_distance, dribble_speed, farthest),
-        partial(Wall, place=place, size=size),
-    )
+    player = _Player(rater, min_score, shot_distance, dribble_speed, farthest)
+    wall = partial(Wall, place=place, size=size)
     return StayOut("defender", player.defender("by the rules", penalty_kick(), wall))
 
 
@@ -252,10 +250,8 @@ def defender_2026_11(
         dribble_speed: top speed with the ball [m/s].
         farthest: largest x of the ball at which it goes for it [m].
     """
-    player, wall = (
-        _Player(rater, min_score, shot_distance, dribble_speed, farthest),
-        partial(Wall, place=place, size=size),
-    )
+    player = _Player(rater, min_score, shot_distance, dribble_speed, farthest)
+    wall = partial(Wall, place=place, size=size)
     return GoRound("as in 2026-11", player.defender("defender", _penalty_kick(), wall))
 
 

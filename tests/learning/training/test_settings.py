@@ -199,3 +199,8 @@ def test_what_does_not_exist_is_told_with_what_does():
         load_settings("shoot", "slow")
     with pytest.raises(SettingsError, match="cannot be read"):
         load_settings("shoot", "slow.yaml")
+
+
+def test_a_change_cannot_be_of_the_task_that_is_asked_for() -> None:
+    with pytest.raises(SettingsError, match="task: is what is trained, go_to_ball: name another one instead"):
+        load_settings("go_to_ball", changes={"task": "shoot"})
