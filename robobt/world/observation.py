@@ -64,6 +64,10 @@ def seen(robots: FloatArray, balls: FloatArray, own: int, field: FieldGeometry) 
     return Seen(bodies.view(ROBOT)[..., 0], rolling.view(BALL)[..., 0], own, field)
 
 
+SCALES = "max_speed", "max_turn"
+"""Fields of an action's scaling that can be the scale of an entry."""
+
+
 @dataclass(frozen=True, slots=True)
 class Entry:
     """An entry of an observation vector.
@@ -83,6 +87,13 @@ class Entry:
     range: float | str = inf
     scale: float | str = 1.0
     signed: bool = True
+
+    def __post_init__(self) -> None:
+        if isinstance(self.scale, str) and self.scale not in SCALES:
+            known = " or ".join(SCALES)
+            raise ValueError(
+                f"the scale of the entry {self.name!r} must be a number, {known}, not {self.scale!r}"
+            )
 
 
 @dataclass(frozen=True)

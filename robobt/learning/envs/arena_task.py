@@ -89,6 +89,8 @@ class ArenaTask:
 
     def __init_subclass__(cls) -> None:
         super().__init_subclass__()
+        if not issubclass(cls.Settings, TaskSettings):
+            raise TypeError(f"{cls.__name__}: Settings must be a subclass of TaskSettings")
         if cls.Settings in _TASKS:
             about = {"__module__": cls.__module__, "__qualname__": f"{cls.__qualname__}.Settings"}
             cls.Settings = type("Settings", (cls.Settings,), {**about, "__doc__": cls.Settings.__doc__})
@@ -99,6 +101,13 @@ class ArenaTask:
             raise ValueError(f"n must be at least 1, not {n}")
         if not isinstance(getattr(self, "observation", None), ObservationSpec):
             raise TypeError(f"{type(self).__name__}: has no observation")
+        if self.robots < 1:
+            raise ValueError(f"{type(self).__name__}: robots must be at least 1, not {self.robots}")
+        if not self.learners or not set(self.learners) <= set(range(self.robots)):
+            known = ", ".join(str(index) for index in range(self.robots))
+            raise ValueError(
+                f"{type(self).__name__}: learners must be of the robots {known}, not {self.learners}"
+            )
         if len(self.start_columns) < 6 * self.robots + 4:
             self.start_columns = columns_of(self.robots)
         self.settings = settings = self.Settings() if settings is None else settings

@@ -8,6 +8,7 @@ from math import hypot, sqrt
 import numpy as np
 from gymnasium.spaces import Box
 
+from robobt.config.errors import unknown_name
 from robobt.learning.envs.perception import CUT_OFF
 from robobt.learning.envs.settings import TaskSettings
 from robobt.world.observation import ObservationSpec
@@ -17,7 +18,15 @@ BUMP = 0.5
 
 
 def bounded(spec: ObservationSpec, ranges: Mapping[str, float]) -> Box[np.float32]:
-    """Return the space of the vectors of ``spec``; ``ranges`` says how large its quantities are at most."""
+    """Return the space of the vectors of ``spec``; ``ranges`` says how large its quantities are at most.
+
+    Raises:
+        ValueError: an entry's range is the name of none of them.
+    """
+    for one in spec.entries:
+        if isinstance(one.range, str) and one.range not in ranges:
+            hint = unknown_name(one.range, ranges)
+            raise ValueError(f"the entry {one.name!r} has no known range, {one.range!r}; {hint}")
     high = [ranges[one.range] if isinstance(one.range, str) else one.range for one in spec.entries]
     low = [-most if one.signed else 0.0 for one, most in zip(spec.entries, high, strict=True)]
     return Box(np.array(low, dtype=np.float32), np.array(high, dtype=np.float32), dtype=np.float32)

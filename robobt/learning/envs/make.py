@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import sys
+from pathlib import Path
+
 from robobt.learning.envs.arena_task import ArenaTask, task_of
 from robobt.learning.envs.per_robot import PerRobot
 from robobt.learning.envs.settings import TaskSettings
 from robobt.learning.tasks import TASKS, environment_id
 from robobt.plays.python_files import REGISTRIES, import_file
+from robobt.plays.sources import read_sources
 
 REGISTRIES.append(TASKS)
 
@@ -24,6 +28,8 @@ def find_task(name: str) -> type[ArenaTask]:
     file, _, inner = name.rpartition(":")
     if file.endswith(".py") or name.endswith(".py"):
         return _task_in(file or name, inner if file else "")
+    if file and Path(f"{file}.py").is_file():
+        raise KeyError(f"no task is called {name!r}; write {file}.py:{inner}")
     ids = {environment_id(known): known for known in TASKS}
     found: type[ArenaTask] = TASKS[ids.get(name, name)]
     return found
@@ -39,8 +45,21 @@ def _task_in(file: str, name: str) -> type[ArenaTask]:
                 found[task.name] = task
     if name not in found:
         there = ", ".join([f"{file}:{each}" for each in found]) or "no subclass of ArenaTask"
-        raise KeyError(f"{file}: has no task {name!r}; there is {there}")
+        problem = f"has no task {name!r}" if name else "does not say which task"
+        raise KeyError(f"{file}: {problem}; there is {there}")
     return found[name]
+
+
+def task_file(settings: TaskSettings) -> tuple[str, str]:
+    """Return the file of a user's task, and a hash of it and of what it imports from its folder.
+
+    Both are empty for a task that ships, and for one that was written in no file.
+    """
+    module = _task(settings).__module__
+    file = getattr(sys.modules.get(module), "__file__", None)
+    if file is None or module.partition(".")[0] == "robobt":
+        return "", ""
+    return file, read_sources([file]).digest()
 
 
 def make_task(settings: TaskSettings, n: int) -> ArenaTask:

@@ -34,6 +34,7 @@ class RunState(TypedDict):
     validations: list[dict[str, Any]]
     clock: dict[str, float]
     robobt: str
+    task_digest: str
 
 
 class CheckpointError(RobobtError, ValueError):

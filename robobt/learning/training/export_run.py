@@ -18,7 +18,7 @@ from robobt.learning.envs import make_task
 from robobt.learning.training.evaluation import Evaluation
 from robobt.learning.training.problems import problem_of
 from robobt.learning.training.results import TrainResult
-from robobt.learning.training.run_folder import RESULT, load_run
+from robobt.learning.training.run_folder import RESULT, check_task, load_run
 from robobt.learning.training.settings import evaluated_on
 from robobt.models.card import MODEL_NAME, Measured, ModelCard, ObservationCard, action_outputs
 from robobt.models.export import export_model, refuse_to_replace
@@ -51,7 +51,7 @@ def export_run(
         force: whether files that are there already may be replaced.
 
     Raises:
-        RunFolderError: the folder holds no run that has ended.
+        RunFolderError: the folder holds no run that has ended, or the file of its task has been edited since.
         ModelError: the actor cannot be written as it is, or under that name.
     """
     if name and (not re.fullmatch(MODEL_NAME, name) or name.endswith(tuple(SUFFIXES.values()))):
@@ -61,6 +61,7 @@ def export_run(
         )
     result = load_run(_best_seed(Path(run)))
     settings = result.settings
+    check_task(Path(run), settings, result.figures.get("task_digest", ""))
     called = name or f"{settings.task.rpartition(':')[2]}_{settings.learner}"
     for format_ in formats:
         refuse_to_replace(Path(folder) / f"{called}{SUFFIXES[format_]}", force)

@@ -75,7 +75,7 @@ class Figures(TypedDict):
     """The content of ``result.json``.
 
     ``best_steps`` is the step at which the best actor was found, ``cpu_s`` the CPU time of collecting and
-    learning, ``weights`` a hash of the agent's final weights.
+    learning, ``weights`` a hash of the agent's final weights, ``task_digest`` a hash of a user's task's code.
     """
 
     task: str
@@ -83,6 +83,7 @@ class Figures(TypedDict):
     seed: int
     robobt: str
     commit: str
+    task_digest: str
     stopped_early: bool
     steps: int
     updates: int

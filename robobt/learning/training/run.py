@@ -167,6 +167,7 @@ class Run(ABC):
             "seed": settings.seed,
             "robobt": __version__,
             "commit": self._commit,
+            "task_digest": self._folder.task_digest,
             "stopped_early": self._steps < settings.steps,
             "steps": self._steps,
             "updates": self._agent.updates,
@@ -198,6 +199,7 @@ class Run(ABC):
                 "validations": self._selection.state(),
                 "clock": self._clock.state(),
                 "robobt": __version__,
+                "task_digest": self._folder.task_digest,
             },
         )
         self._saved_at = time.monotonic()

@@ -36,6 +36,7 @@ from robobt.config.atomic import write_atomically
 from robobt.config.errors import RobobtError, naming
 from robobt.config.yaml import read_yaml, write_yaml
 from robobt.learning.agents.networks import Actor
+from robobt.learning.envs.make import task_file
 from robobt.learning.training import checkpoint
 from robobt.learning.training.checkpoint import Arrays, RunState
 from robobt.learning.training.curves import draw_curves
@@ -101,15 +102,18 @@ class RunFolder:
         result: of a run that is already finished, else None.
         stored: arrays and plain data of the checkpoint to resume from; None to start.
         warning: why an older checkpoint than the newest is used, else None.
+        task_digest: a hash of the code of a user's task; empty for a task that ships.
 
     Raises:
-        RunFolderError: it has a run that is not to be resumed, or one with other settings.
+        RunFolderError: it has a run that is not to be resumed, one with other settings, or one of a task
+            whose file has been edited since.
         CheckpointError: no checkpoint can be read.
     """
 
     def __init__(self, path: Path, settings: TrainSettings, resume: bool) -> None:
         self.path = path
         self.settings = settings
+        _, self.task_digest = task_file(settings.environment)
         self.result: TrainResult | None = None
         self.stored: tuple[Arrays, RunState] | None = None
         self.warning: str | None = None
@@ -194,6 +198,7 @@ class RunFolder:
             )
         if (self.path / RESULT).exists():
             self.result = load_run(self.path)
+            check_task(self.path, self.settings, self.result.figures.get("task_digest", ""))
             return
         newest = self.path / CHECKPOINT
         if newest.exists() or checkpoint.previous(newest).exists():
@@ -202,6 +207,7 @@ class RunFolder:
                 raise RunFolderError(
                     f"{self.path}: was begun by robobt {state['robobt']}, this is {__version__}"
                 )
+            check_task(self.path, self.settings, state.get("task_digest", ""))
             self.stored = arrays, state
 
     def _kept_lines(self) -> list[str]:
@@ -219,9 +225,21 @@ def scalars_of(validation: Validation) -> dict[str, float]:
     return {tag: value for tag, value in found.items() if value is not None}
 
 
+def check_task(folder: Path, settings: TrainSettings, begun_with: str) -> None:
+    """Raise an error if a user's task is not what it was when a run began; by a hash of its code, or none."""
+    file, digest = task_file(settings.environment)
+    if begun_with and begun_with != digest:
+        raise RunFolderError(
+            f"{folder}: {Path(file).name}, or a module that it imports, has changed since this run began; "
+            "undo the change, or train in another folder"
+        )
+
+
 def load_run(folder: str | Path) -> TrainResult:
     """Load a finished run."""
     path = Path(folder)
+    if path.is_dir() and not (path / RESULT).exists():
+        raise RunFolderError(f"{path}: not the folder of a run that has ended: there is no {RESULT}")
     try:
         figures: Figures = json.loads((path / RESULT).read_text(encoding="utf-8"))
         lines = (path / LOG).read_text(encoding="utf-8").splitlines()

@@ -143,6 +143,7 @@ def load_settings(
     environment = settings.environment
     try:
         arenas = make_task(environment, 1)
+        _ = arenas.space
     except Exception as error:
         raise SettingsError(settings.task, f"{type(error).__name__}: {error}") from error
     if settings.central and not arenas.central:

@@ -190,6 +190,36 @@ def test_a_file_without_the_task_is_told(own: str) -> None:
     Path("bare.py").write_text("from robobt.learning.envs import ArenaTask\nclass Bare(ArenaTask): pass\n")
     with pytest.raises(SettingsError, match=r"bare\.py:Bare: TypeError: Bare: has no observation"):
         load_settings("bare.py:Bare")
+    with pytest.raises(SettingsError, match=r"own\.py: does not say which task; there is own\.py:Middle"):
+        load_settings("own.py")
+    with pytest.raises(SettingsError, match=r"no task is called 'own:Middle'; write own\.py:Middle"):
+        load_settings("own:Middle")
+
+
+@pytest.mark.parametrize(
+    ("line", "wrong", "said"),
+    [
+        ('"far", 2.0', '"fra", 2.0', "the entry 'x' has no known range, 'fra'; .* did you mean far"),
+        (
+            '"far", 2.0',
+            '"far", "max_sped"',
+            r"own\.py:\d+: .* of the entry 'x' must be a number, max_speed or",
+        ),
+        ("observation = TO", "robots = 0\n    observation = TO", "Middle: robots must be at least 1, not 0"),
+        (
+            "observation = TO",
+            "learners = (5,)\n    observation = TO",
+            r"learners must be of the robots 0, not \(5",
+        ),
+        ("(TaskSettings)", "", "own.py:.* Middle: Settings must be a subclass of TaskSettings"),
+    ],
+)
+def test_what_is_wrong_in_a_declaration_is_told_before_anything_is_trained(
+    own: str, line: str, wrong: str, said: str
+) -> None:
+    Path("own.py").write_text(OWN.replace(line, wrong))
+    with pytest.raises((SettingsError, PythonFileError), match=said):
+        load_settings(own)
 
 
 def test_a_name_that_is_taken_is_told() -> None:

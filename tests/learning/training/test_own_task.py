@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import json
 import re
+import subprocess
+import sys
 import time
 from pathlib import Path
 
@@ -53,6 +55,13 @@ def test_a_task_in_ones_own_folder_goes_all_the_way(
     broken.kill()
     broken.communicate()
     assert not Path("broken/seed_0/result.json").exists()
+    file = Path("my_task.py")
+    file.write_text(file.read_text().replace("0.3 *", "0.4 *"))
+    command = (sys.executable, *TRAIN, "--out", "broken", "--resume")
+    refused = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert "my_task.py, or a module that it imports, has changed since this run began" in refused.stderr
+    assert refused.returncode == 1
+    file.write_text(block("# my_task.py"))
     resumed = json.loads(run(*TRAIN, "--out", "broken", "--resume", "--json"))
     assert resumed["runs"][0]["weights"] == whole["runs"][0]["weights"]
     line = json.loads(Path("broken/seed_0/log.jsonl").read_text().splitlines()[-1])
