@@ -103,7 +103,7 @@ class ArenaTask:
             raise TypeError(f"{type(self).__name__}: has no observation")
         if self.robots < 1:
             raise ValueError(f"{type(self).__name__}: robots must be at least 1, not {self.robots}")
-        if not self.learners or not set(self.learners) <= set(range(self.robots)):
+        if not set(self.learners) <= set(range(self.robots)):
             known = ", ".join(str(index) for index in range(self.robots))
             raise ValueError(
                 f"{type(self).__name__}: learners must be of the robots {known}, not {self.learners}"
@@ -124,7 +124,7 @@ class ArenaTask:
         self._seeded = False
         self._all = np.arange(n)
         self._rewards = np.zeros(n)
-        self._terms: NDArray[np.void] = np.zeros(n, dtype=self.terms)
+        self._own_terms: NDArray[np.void] | None = None
         judged_by = next(kind for kind in type(self).__mro__ if "_judge" in vars(kind))
         self._own_reward = type(self).reward is not judged_by.__dict__.get("reward", ArenaTask.reward)
         self._own_opponents = not type(self).oppose.__module__.startswith("robobt.")
@@ -265,13 +265,19 @@ class ArenaTask:
         return [own if index in self.learners else None for index in range(self.robots)]
 
     @property
-    def _progress_rows(self) -> FloatArray:
+    def _progress(self) -> NDArray[np.void]:
         # Not kept: in a copy, or unpickled, it would be an array of its own.
-        return self._progress.view(np.float64).reshape(self.n, -1)
+        progress: NDArray[np.void] = self._progress_rows.view(PROGRESS)[:, 0]
+        return progress
 
     @property
-    def _term_rows(self) -> FloatArray:
-        return self._judged_terms.view(np.float64).reshape(self.n, -1)
+    def _judged_terms(self) -> NDArray[np.void]:
+        return self._term_rows.view(self.terms)[:, 0] if self.terms.names else np.zeros(self.n, self.terms)
+
+    @property
+    def _terms(self) -> NDArray[np.void]:
+        """The terms of the episodes so far, (n,)."""
+        return self._judged_terms if self._own_terms is None else self._own_terms
 
     @property
     def ticks(self) -> FloatArray:
@@ -362,9 +368,12 @@ class ArenaTask:
         ends: BoolArray = np.zeros((3, self.n), dtype=np.bool_)
         last = self.settings.decide_every - 1
         for tick in range(self.settings.decide_every):
-            call(self, "oppose", self._commands)
-            if self._own_opponents and not np.isfinite(self._commands).all():
-                raise error_of(type(self), "oppose", ValueError("a command is not finite"))
+            if not self._own_opponents:
+                self.oppose(self._commands)
+            else:
+                call(self, "oppose", self._commands)
+                if not np.isfinite(self._commands).all():
+                    raise error_of(type(self), "oppose", ValueError("a command is not finite"))
             if self._own_reward or self._own_ends:
                 ended = self._step_with_own(given, rewards, ends)
             else:
@@ -396,7 +405,7 @@ class ArenaTask:
         robots, balls = arenas.robots.copy(), arenas.balls.copy()
         arenas.step(self._randomiser.delayed(self._carried()))
         earned, judged_ends, total = np.zeros(self.n), ends.copy(), progress["total_reward"].copy()
-        self._judged_terms = np.zeros(self.n, dtype=type(self).terms)
+        self._term_rows[:] = 0.0
         self._judge(actions, earned, judged_ends)
         tick = Tick(
             now=seen(arenas.robots, arenas.balls, blue, field),
@@ -409,7 +418,7 @@ class ArenaTask:
             ticks=progress["ticks"],
             success=judged_ends[SUCCESS] & going,
             failed=judged_ends[TERMINATED] & ~judged_ends[SUCCESS] & going,
-            terms={name: self._judged_terms[name] for name in type(self).terms.names or ()},
+            terms={name: self._judged_terms[name].copy() for name in self.terms.names or ()},
         )
         if self._own_ends:
             success, failed = checked_ends(self, tick, self.n)
@@ -421,11 +430,11 @@ class ArenaTask:
         else:
             ends[:] = judged_ends
         terms = checked_terms(self, tick, self.n)
-        if self._terms.dtype.names != tuple(terms):
-            self._terms = np.zeros(self.n, dtype=np.dtype([(name, np.float64) for name in terms]))
+        if self._own_terms is None or self._own_terms.dtype.names != tuple(terms):
+            self._own_terms = np.zeros(self.n, dtype=np.dtype([(name, np.float64) for name in terms]))
         earned = np.zeros(self.n)
         for name, term in terms.items():
-            self._terms[name] += np.where(going, term, 0.0)
+            self._own_terms[name] += np.where(going, term, 0.0)
             earned += term
         rewards[going] += earned[going]
         progress["total_reward"] = np.where(going, total + earned, total)
@@ -454,9 +463,9 @@ class ArenaTask:
         self._randomiser = Randomiser(settings, self.arenas, self._parameter_rngs)
         self._commands = np.zeros((n, robots, size(COMMAND)))
         self._filled = np.zeros((n * len(self.learners), size(COMMAND)))
-        self._progress: NDArray[np.void] = np.zeros(n, dtype=PROGRESS)
-        self._terms = np.zeros(n, dtype=self.terms)
-        self._judged_terms = self._terms
+        self._progress_rows = np.zeros((n, size(PROGRESS)))
+        self._term_rows = np.zeros((n, size(self.terms)))
+        self._own_terms = None
         self._starts: IntArray = np.full(n, -1, dtype=np.int64)
         self._optimal_time = np.full(n, np.nan)
         self.ended = None
