@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Any, TypeVar, cast
+from typing import Any, TypeVar
 
 from robobt.skills.aims import GoalLine as GoalLine
 from robobt.skills.aims import Pass as Pass
@@ -54,9 +54,10 @@ class TeamStore:
 
     def shared(self, kind: type[T]) -> T:
         """Return the team's one object of this ``kind``, made without arguments when first asked for."""
-        if kind not in self.kept:
-            self.kept[kind] = kind()
-        return cast(T, self.kept[kind])
+        found: T | None = self.kept.get(kind)
+        if found is None:
+            found = self.kept[kind] = kind()
+        return found
 
 
 @dataclass(slots=True)
