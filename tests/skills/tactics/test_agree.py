@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from math import pi
 
 import numpy as np
 import pytest
@@ -105,6 +106,21 @@ def test_without_the_ball_it_defends_and_with_it_it_supports() -> None:
     tasks = list(plan.tasks.values())
     assert tasks.count(Task.SUPPORT) >= 3
     assert Task.MARK not in tasks
+
+
+@pytest.mark.parametrize("ours", [True, False])
+def test_a_ball_that_both_can_have_at_the_same_time_stays_with_the_team_that_had_it(ours: bool) -> None:
+    holder = robot(-0.6, 0.0, number=3, contact=ours)
+    opponent = robot(0.6, 0.0, heading=pi, number=3, contact=not ours)
+    agreement = Agreement()
+    for step in range(60):
+        plan = agreement.at(step / 60, held(holder if ours else opponent), (holder,), (opponent,))
+    assert plan.ours is ours
+    here, there = replace(holder, ball_contact=False), replace(opponent, ball_contact=False)
+    for step in range(60, 240):
+        plan = agreement.at(step / 60, (0.0, 0.0), (here,), (there,))
+    assert plan.own_times[3] == pytest.approx(plan.their_times[3])
+    assert plan.ours is ours
 
 
 @pytest.mark.parametrize(("part", "task"), [("wall", Task.WALL), ("marks", Task.MARK)])

@@ -1,5 +1,7 @@
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 
 from robobt.skills.aims import Pass
@@ -9,6 +11,7 @@ from robobt.skills.tactics.agree import agree
 from robobt.skills.tactics.candidates import passes
 from robobt.skills.tactics_settings import DEFAULT_TACTICS
 from robobt.world import DIVISION_B, GameState, RobotState, Team
+from robobt.world.game import TeamStatus
 from robobt.world.geometry import Point, distance
 from robobt.world.rules import in_their_defense_area
 from tests.skills.fixed_world import frame, held, robot
@@ -63,6 +66,13 @@ def test_at_a_restart_no_receiver_stands_too_close_to_their_defence_area() -> No
 
 def test_who_does_not_share_out_tasks_gets_no_pass() -> None:
     assert not found(())
+
+
+def test_the_goalkeeper_is_not_passed_to_however_free_it_is() -> None:
+    other = robot(-1.0, -2.0, number=5)
+    assert found((MATE, other))[0].receiver == MATE.id
+    goalkeeper = replace(OPEN, blue=TeamStatus(keeper=MATE.id))
+    assert {one.receiver for one in found((MATE, other), game=goalkeeper)} == {other.id}
 
 
 def test_the_ball_waits_for_a_receiver_that_has_a_long_way() -> None:

@@ -7,6 +7,7 @@ import pytest
 
 from robobt.skills.tactics.agree import agree
 from robobt.skills.tactics.choose_kick import ChooseKick
+from robobt.skills.tactics_settings import TacticsSettings
 from robobt.tree import Status
 from robobt.world import GameState, RobotState, Team
 from robobt.world.geometry import segment_distance
@@ -59,6 +60,19 @@ def test_far_from_the_goal_it_passes_forward_and_tells_the_team() -> None:
     assert store.pass_.receiver == 4
     assert store.team.plan.next_pass == store.pass_
     assert store.shot is None
+
+
+@pytest.mark.parametrize(("gap", "status"), [(0.3, Status.SUCCESS), (0.4, Status.FAILURE)])
+def test_a_weak_pass_is_played_once_an_opponent_presses(gap: float, status: Status) -> None:
+    chooser = Chooser(ChooseKick(), (robot(1.5, 1.5, number=4),))
+    # However little the ball is worth where it is.
+    chooser.alone.store.team.plan.tactics = TacticsSettings(better=10.0)
+    me = robot(-1.5, 0.0, 0.5, number=1, contact=True)
+    x, y = held(me)
+    assert chooser.at(0.0, me, (KEEPER, robot(x, y - gap, number=3))) is status
+    weak = chooser.alone.store.candidates[0]
+    assert 0.1 < weak.score < 0.3
+    assert chooser.alone.store.pass_ == (weak if status is Status.SUCCESS else None)
 
 
 def test_nobody_is_passed_to_through_an_opponent() -> None:

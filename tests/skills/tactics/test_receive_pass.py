@@ -7,6 +7,7 @@ import pytest
 
 from robobt.skills.tactics.receive_pass import ReceivePass
 from robobt.tree import Status
+from robobt.world import RobotLimits
 from robobt.world.rules import has_ball
 from tests.simulation import Trial, blue
 from tests.skills.fixed_world import Alone, frame, held, robot
@@ -31,6 +32,16 @@ def test_a_ball_in_the_air_is_not_sent_on_with_one_touch() -> None:
     for height, hint in ((0.0, "sending it on"), (0.2, "taking the ball")):
         alone = Alone(ReceivePass())
         view = frame(robot(2.9, 0.1, heading=0.8), (*ball, height), game=OPEN)
+        assert alone.tick(view) is Status.RUNNING
+        assert alone.tree.feedback_message == hint
+
+
+def test_a_ball_that_an_opponent_is_at_first_is_not_sent_on_with_one_touch() -> None:
+    ball = (4.2, 1.4, -1.9, -1.9)
+    for place, hint in (((4.3, 2.0), "sending it on"), ((4.2, 1.4), "taking the ball")):
+        alone = Alone(ReceivePass())
+        opponent = robot(*place, number=1, limits=RobotLimits(acceleration=0.1))
+        view = frame(robot(2.9, 0.1, heading=0.8), ball, opponents=(opponent,), game=OPEN)
         assert alone.tick(view) is Status.RUNNING
         assert alone.tree.feedback_message == hint
 
