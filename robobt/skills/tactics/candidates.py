@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import lru_cache
 from math import cos, hypot, pi, sin
-from typing import NamedTuple
+from typing import NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-from robobt.motion.arrival import arrival_time
+from robobt.motion.arrival import time_to
 from robobt.skills.store import Pass, TeamStore
 from robobt.skills.tactics.chances import point_worth, redirect_angle
 from robobt.skills.tactics.lanes import (
@@ -21,8 +22,9 @@ from robobt.skills.tactics.lanes import (
     kick_speed,
 )
 from robobt.skills.tactics_settings import TACTICS, AppliedTactics
-from robobt.world.compiled import compiled
-from robobt.world.geometry import FloatArray
+from robobt.world.compiled import compiled, record_dtype
+from robobt.world.geometry import FloatArray, distance
+from robobt.world.records import mover_records
 from robobt.world.state import Frame, RobotState
 
 
@@ -43,6 +45,20 @@ class _Allowed(NamedTuple):
     area_gap: float
     widest: float
 
+
+class _Rated(Protocol):
+    """A pass: its score, 0 where there is none, kick speed [m/s], wait [s], and whether it is chipped."""
+
+    score: float
+    speed: float
+    wait: float
+    chip: float
+
+
+_RATED = record_dtype(_Rated)
+
+_TAKEN, _SENT_ON, _CHIPPED = 0, 1, 2
+"""Kinds of passes: what the receiver does with one along the ground, or one that flies."""
 
 _RINGS = ((0.0, 1), (0.35, 6), (0.8, 8))
 
@@ -80,7 +96,7 @@ def passes(
             points.append((bx + dx, by + dy))
             owners.append(index)
         place = plan.places.get(mate.id)
-        if place is not None and hypot(place[0] - mate.x, place[1] - mate.y) < 2.0:
+        if place is not None and distance(place, mate.position) < 2.0:
             points.append(place)
             owners.append(index)
         if last is not None and last.receiver == mate.id:
@@ -111,7 +127,7 @@ def passes(
             continue
         number = frame.own[index].id
         if last is not None and last.receiver == number:
-            near = hypot(point[0] - last.target[0], point[1] - last.target[1]) < 0.3
+            near = distance(last.target, point) < 0.3
             score *= keep if near else 0.5 * (1.0 + keep)
         found.append(Pass(number, point, speed, score, wait, chip > 0.0))
     found.sort(key=lambda one: -one.score)
@@ -134,56 +150,47 @@ def _rate(
     ox: float,
     oy: float,
     heading: float,
-    own: FloatArray,
-    opponents: FloatArray,
+    own_: FloatArray,
+    opponents_: FloatArray,
     allowed: _Allowed,
     numbers: FloatArray,
-) -> FloatArray:
-    """Rate passes to points (G, 2) of the robots ``owners``.
-
-    Returns (G, 4): score, kick speed [m/s], wait [s] and whether it is chipped.
-    """
-    out = np.zeros((len(points), 4))
+) -> NDArray[np.record]:
+    """Rate passes to points (G, 2) of the robots ``owners``; return the best to each, :class:`_Rated`."""
+    out = np.zeros(len(points), dtype=_RATED)
+    rated: Sequence[_Rated] = out
     tactics: AppliedTactics = numbers.view(TACTICS)[0]
-    half_length, half_width = tactics.half_length, tactics.half_width
-    depth, half_area, area_gap = tactics.defense_depth, tactics.defense_width / 2.0, allowed.area_gap
+    own, opponents = mover_records(own_), mover_records(opponents_)
     for g in range(len(points)):
-        x, y = points[g, 0], points[g, 1]
-        if abs(x) > half_length - 0.15 or abs(y) > half_width - 0.15:
-            continue
-        if abs(x) > half_length - depth - area_gap and abs(y) < half_area + area_gap:
-            continue
+        x, y = points[g]
         length = hypot(x - ox, y - oy)
-        if length < allowed.shortest:
+        if length < allowed.shortest or not _can_be_target(x, y, allowed.area_gap, tactics):
             continue
-        i = owners[g]
+        i, best = owners[g], rated[g]
         turn = np.arctan2(y - oy, x - ox) - heading
         turn = abs((turn + pi) % (2.0 * pi) - pi)
         delay = 0.1 + turn / tactics.turn_rate
-        there = arrival_time(own[i], x, y, 0.1)
-        for kind in range(3):
-            redirect, chip = kind == 1, kind == 2
+        there = time_to(own[i], x, y, 0.1)
+        for kind in (_TAKEN, _SENT_ON, _CHIPPED):
             ready = there
-            if redirect:
+            if kind == _SENT_ON:
                 if (
                     length < tactics.shortest_redirect
-                    or redirect_angle(ox, oy, x, y, half_length) > allowed.widest
+                    or redirect_angle(ox, oy, x, y, tactics.half_length) > allowed.widest
                 ):
                     continue
                 ready += tactics.redirect_turn
-            if chip:
+            if kind == _CHIPPED:
                 if (
                     not allowed.chips
                     or not tactics.shortest <= length <= tactics.longest_chip
-                    or out[g, 0] > 0.0
+                    or best.score > 0.0
                 ):
                     continue
                 speed = chip_speed(length, tactics)
                 flight = chip_time(length, tactics)
             else:
-                arrival = (
-                    tactics.redirect_speed if redirect else min(tactics.receive_speed, 0.8 + 0.4 * length)
-                )
+                slow = min(tactics.receive_speed, 0.8 + 0.4 * length)
+                arrival = tactics.redirect_speed if kind == _SENT_ON else slow
                 speed = kick_speed(length, arrival, tactics)
                 flight = flight_time(length, speed, tactics)
             wait = delay
@@ -192,19 +199,26 @@ def _rate(
                 wait = ready - flight
                 if wait > tactics.longest_wait:
                     continue
-            if chip:
+            if kind == _CHIPPED:
                 chance = chip_chance(ox, oy, x, y, wait, opponents, own, i, tactics)
             else:
                 chance = arrive_chance(ox, oy, x, y, speed, wait, opponents, own, i, tactics)
             if chance < allowed.least:
                 continue
             worth = point_worth(ox, oy, x, y, wait + flight, opponents, tactics)
-            if redirect and worth < tactics.redirect_worth:
+            if kind == _SENT_ON and worth < tactics.redirect_worth:
                 continue
             score = chance * worth * max(0.3, 1.0 - 0.25 * wait)
-            if score > out[g, 0]:
-                out[g, 0] = score
-                out[g, 1] = speed
-                out[g, 2] = max(0.0, ready - flight)
-                out[g, 3] = 1.0 if chip else 0.0
+            if score > best.score:
+                best.score, best.speed, best.wait = score, speed, max(0.0, ready - flight)
+                best.chip = 1.0 if kind == _CHIPPED else 0.0
     return out
+
+
+@compiled
+def _can_be_target(x: float, y: float, area_gap: float, tactics: AppliedTactics) -> bool:
+    """Return whether (x, y) is well inside the field and outside the defence areas."""
+    half_length, half_area = tactics.half_length, tactics.defense_width / 2.0
+    if abs(x) > half_length - 0.15 or abs(y) > tactics.half_width - 0.15:
+        return False
+    return not (abs(x) > half_length - tactics.defense_depth - area_gap and abs(y) < half_area + area_gap)

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from math import exp, hypot, inf, sqrt
 
 from robobt.skills.tactics_settings import AppliedTactics
 from robobt.world import ball_model
 from robobt.world.ball_model import time_for
 from robobt.world.compiled import compiled
-from robobt.world.geometry import FloatArray
+from robobt.world.records import Mover
 from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS
 
 _CHIP_SAMPLES = 4
@@ -33,28 +34,28 @@ def flight_time(length: float, speed: float, tactics: AppliedTactics) -> float:
 
 
 @compiled
-def time_to_pass(robot: FloatArray, x: float, y: float, tactics: AppliedTactics) -> float:
-    """Return when a robot, a row of movers, can touch a ball at (x, y), passing at any speed [s]."""
-    px = robot[0] + tactics.reaction * robot[2]
-    py = robot[1] + tactics.reaction * robot[3]
+def time_to_pass(robot: Mover, x: float, y: float, tactics: AppliedTactics) -> float:
+    """Return when a robot can touch a ball at (x, y), passing at any speed [s]."""
+    px = robot.x + tactics.reaction * robot.vx
+    py = robot.y + tactics.reaction * robot.vy
     dx, dy = x - px, y - py
     gap = hypot(dx, dy)
     if gap <= _BODY:
         return 0.0
-    towards = (dx * robot[2] + dy * robot[3]) / gap
+    towards = (dx * robot.vx + dy * robot.vy) / gap
     gap -= _BODY
-    acceleration = robot[5]
+    acceleration = robot.acceleration
     needed = (sqrt(towards * towards + 2.0 * acceleration * gap) - towards) / acceleration
-    return float(max(needed, gap / robot[4]) + tactics.reaction)
+    return float(max(needed, gap / robot.max_speed) + tactics.reaction)
 
 
 @compiled
-def cannot_pass_by(robot: FloatArray, x: float, y: float, time: float, tactics: AppliedTactics) -> bool:
+def cannot_pass_by(robot: Mover, x: float, y: float, time: float, tactics: AppliedTactics) -> bool:
     """Return whether :func:`time_to_pass` is surely above ``time`` [s], told without taking roots."""
     free = max(0.0, time - tactics.reaction)
-    fastest = abs(robot[2]) + abs(robot[3]) + 0.5 * robot[5] * free
-    reach = _BODY + min(robot[4], fastest) * free
-    dx, dy = x - robot[0] - tactics.reaction * robot[2], y - robot[1] - tactics.reaction * robot[3]
+    fastest = abs(robot.vx) + abs(robot.vy) + 0.5 * robot.acceleration * free
+    reach = _BODY + min(robot.max_speed, fastest) * free
+    dx, dy = x - robot.x - tactics.reaction * robot.vx, y - robot.y - tactics.reaction * robot.vy
     return bool(dx * dx + dy * dy > reach * reach + 1e-6)
 
 
@@ -66,7 +67,7 @@ def lane_margin(
     y: float,
     speed: float,
     delay: float,
-    robots: FloatArray,
+    robots: Sequence[Mover],
     tactics: AppliedTactics,
 ) -> float:
     """Return the least head start of a ball over every robot on its way from (ox, oy) to (x, y) [s].
@@ -80,17 +81,17 @@ def lane_margin(
         share = k / _SAMPLES
         when = delay + flight_time(share * length, speed, tactics)
         px, py = ox + share * dx, oy + share * dy
-        for j in range(len(robots)):
-            if cannot_pass_by(robots[j], px, py, least + when, tactics):
+        for robot in robots:
+            if cannot_pass_by(robot, px, py, least + when, tactics):
                 continue
-            margin = time_to_pass(robots[j], px, py, tactics) - when
+            margin = time_to_pass(robot, px, py, tactics) - when
             if margin < least:
                 least = margin
     # Between the points nothing may stand in the lane either.
-    for j in range(len(robots)):
-        along = ((robots[j, 0] - ox) * dx + (robots[j, 1] - oy) * dy) / max(length, 1e-6)
+    for robot in robots:
+        along = ((robot.x - ox) * dx + (robot.y - oy) * dy) / max(length, 1e-6)
         if 0.0 < along < length:
-            aside = abs((robots[j, 0] - ox) * dy - (robots[j, 1] - oy) * dx) / max(length, 1e-6)
+            aside = abs((robot.x - ox) * dy - (robot.y - oy) * dx) / max(length, 1e-6)
             if aside < _BODY + 0.03:
                 least = min(least, -0.3)
     return least
@@ -112,24 +113,24 @@ def arrive_chance(
     y: float,
     speed: float,
     delay: float,
-    opponents: FloatArray,
-    mates: FloatArray,
+    opponents: Sequence[Mover],
+    mates: Sequence[Mover],
     skip: int,
     tactics: AppliedTactics,
 ) -> float:
     """Return the chance that a pass kicked at ``speed`` after ``delay`` gets from (ox, oy) to (x, y).
 
-    Of ``mates``, which block by standing in the lane, the row ``skip`` is the receiver's.
+    Of ``mates``, which block by standing in the lane, number ``skip`` is the receiver.
     """
     chance = sigmoid(lane_margin(ox, oy, x, y, speed, delay, opponents, tactics) / tactics.margin)
     dx, dy = x - ox, y - oy
     length = max(hypot(dx, dy), 1e-6)
-    for i in range(len(mates)):
+    for i, mate in enumerate(mates):
         if i == skip:
             continue
-        along = ((mates[i, 0] - ox) * dx + (mates[i, 1] - oy) * dy) / length
+        along = ((mate.x - ox) * dx + (mate.y - oy) * dy) / length
         if _BODY < along < length:
-            aside = abs((mates[i, 0] - ox) * dy - (mates[i, 1] - oy) * dx) / length
+            aside = abs((mate.x - ox) * dy - (mate.y - oy) * dx) / length
             if aside < _BODY + 0.02:
                 chance *= 0.1
     return chance
@@ -154,14 +155,14 @@ def chip_chance(
     x: float,
     y: float,
     delay: float,
-    opponents: FloatArray,
-    mates: FloatArray,
+    opponents: Sequence[Mover],
+    mates: Sequence[Mover],
     skip: int,
     tactics: AppliedTactics,
 ) -> float:
     """Return the chance that a pass chipped after ``delay`` gets from (ox, oy) to (x, y), where it rolls.
 
-    Nobody stops it between rising and falling; ``skip`` is the receiver's row in ``mates``.
+    Nobody stops it between rising and falling; number ``skip`` of ``mates`` is the receiver.
     """
     dx, dy = x - ox, y - oy
     length = max(hypot(dx, dy), 1e-6)
@@ -169,21 +170,21 @@ def chip_chance(
     lands = tactics.chip_lands_at * length
     root = sqrt(length)
     least = 10.0
-    for j in range(len(opponents)):
-        if _in_chips_way(opponents[j, 0] - ox, opponents[j, 1] - oy, ux, uy, 0.15, tactics):
+    for opponent in opponents:
+        if _in_chips_way(opponent.x - ox, opponent.y - oy, ux, uy, 0.15, tactics):
             return 0.0
         for k in range(_CHIP_SAMPLES + 1):
             share = k / _CHIP_SAMPLES
             way = lands - tactics.chip_falls + share * (length - lands + tactics.chip_falls)
             when = delay + root * (tactics.chip_lands + share * (tactics.chip_rolls - tactics.chip_lands))
             px, py = ox + way * ux, oy + way * uy
-            if not cannot_pass_by(opponents[j], px, py, least + when, tactics):
-                least = min(least, time_to_pass(opponents[j], px, py, tactics) - when)
+            if not cannot_pass_by(opponent, px, py, least + when, tactics):
+                least = min(least, time_to_pass(opponent, px, py, tactics) - when)
     chance = tactics.chip_taken * sigmoid(least / tactics.margin)
-    for i in range(len(mates)):
+    for i, mate in enumerate(mates):
         if i == skip:
             continue
-        mx, my = mates[i, 0] - ox, mates[i, 1] - oy
+        mx, my = mate.x - ox, mate.y - oy
         along, aside = mx * ux + my * uy, abs(mx * uy - my * ux)
         down = lands - tactics.chip_falls - _BODY < along < length and aside < _BODY + 0.02
         if down or _in_chips_way(mx, my, ux, uy, 0.02, tactics):

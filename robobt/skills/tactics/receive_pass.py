@@ -5,8 +5,6 @@ from __future__ import annotations
 from dataclasses import field
 from math import cos, hypot, sin
 
-import numpy as np
-
 from robobt.motion.arrival import arrival_time
 from robobt.motion.catch import MOUTH, catch
 from robobt.motion.path_planner import travel
@@ -57,7 +55,6 @@ class ReceivePass(Skill):
             raise ValueError(f"widest must be 0 or more, not {self.widest}")
         if not 0.0 <= self.redirect_at <= 1.0:
             raise ValueError(f"redirect_at must be 0 to 1, not {self.redirect_at}")
-        self._best = np.zeros(2)
 
     def on_start(self) -> None:
         """Begin without a decision."""
@@ -133,15 +130,16 @@ class ReceivePass(Skill):
         target, tactics = team.pass_target, team.plan.tactics
         if team.receiver != self.me.id or target is None or not pass_under_way(frame, team):
             return None
-        way = (target[0] - ball.x) * ux + (target[1] - ball.y) * uy
+        target_x, target_y = target
+        way = (target_x - ball.x) * ux + (target_y - ball.y) * uy
         if way < 0.15:
             return None
         x, y = ball.x + way * ux, ball.y + way * uy
         time = frame.ball_model.time_for(way, speed, rolling)
-        if hypot(x - target[0], y - target[1]) > tactics.astray or time > tactics.planned_within:
+        if hypot(x - target_x, y - target_y) > tactics.astray or time > tactics.planned_within:
             return None
-        row = movers((self.me,))[0]
-        return (x, y) if arrival_time(row, x, y, 0.15) <= time + 0.1 else None
+        (mover,) = movers((self.me,))
+        return (x, y) if arrival_time(mover, x, y, 0.15) <= time + 0.1 else None
 
     def _redirect(self, x: float, y: float, time: float, speed: float, ux: float, uy: float) -> float | None:
         """Return the heading from which the ball goes at the goal with one touch; None where it is taken."""
@@ -162,12 +160,12 @@ class ReceivePass(Skill):
         if angle > self.widest + (0.1 if self._redirecting else 0.0):
             self._redirecting = False
             return None
-        chance = shot_from(x, y, time, plan.their_movers, self._best, plan.numbers)
-        if chance < self.redirect_at * (0.5 if self._redirecting else 1.0):
+        shot = shot_from(x, y, time, plan.their_movers, plan.numbers)
+        if shot.chance < self.redirect_at * (0.5 if self._redirecting else 1.0):
             self._redirecting = False
             return None
         self._redirecting = True
-        target: Point = (field.half_length, float(self._best[0]))
-        store.shot = Shot(target, max(0.01, float(self._best[1])), chance)
+        store.shot = Shot((field.half_length, shot.y), max(0.01, shot.half_angle), shot.chance)
         v = max(0.3, speed - 0.5 * time)
-        return aim_of(target[0] - x, target[1] - y, ux * v, uy * v, tactics.shot_speed, tactics.fastest)
+        to_goal = field.half_length - x
+        return aim_of(to_goal, shot.y - y, ux * v, uy * v, tactics.shot_speed, tactics.fastest)

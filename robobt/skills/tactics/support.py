@@ -32,13 +32,13 @@ def support_places(frame: Frame, team: TeamStore, plan: Plan, count: int) -> lis
     old = list(plan.support)
     points = np.concatenate([grid, np.array(old).reshape(-1, 2)])
     origin = _origin(frame, team)
-    rated = rate_points(points, origin[0], origin[1], 0.4, plan.their_movers, plan.numbers)
-    value = rated[:, 0] * rated[:, 1]
+    arrives, worth = rate_points(points, *origin, 0.4, plan.their_movers, plan.numbers).T
+    value = arrives * worth
     # Where no pass gets to now it may in a moment.
-    value += 0.15 * rated[:, 1]
+    value += 0.15 * worth
     value[len(grid) :] *= tactics.stay
     apart = tactics.apart
-    gap = np.hypot(points[:, 0] - origin[0], points[:, 1] - origin[1])
+    gap = _gaps(points, origin)
     value *= np.clip(gap / apart, 0.0, 1.0) ** 2 * np.clip(1.0 - (gap - 4.0) / 5.0, 0.3, 1.0)
     intended = plan.next_pass
     taken: list[Point] = [] if intended is None else [intended.target]
@@ -47,7 +47,8 @@ def support_places(frame: Frame, team: TeamStore, plan: Plan, count: int) -> lis
     chosen: list[Point] = []
     for _ in range(count):
         best = int(value.argmax())
-        place = (float(points[best, 0]), float(points[best, 1]))
+        x, y = points[best].tolist()
+        place = (x, y)
         chosen.append(place)
         _spread(value, points, place, apart)
     plan.support = chosen
@@ -94,8 +95,13 @@ def _beside(gap: float) -> FloatArray:
 
 
 def _spread(value: FloatArray, points: FloatArray, place: Point, apart: float) -> None:
-    gap = np.hypot(points[:, 0] - place[0], points[:, 1] - place[1])
-    value *= np.clip(gap / apart, 0.0, 1.0) ** 2
+    value *= np.clip(_gaps(points, place) / apart, 0.0, 1.0) ** 2
+
+
+def _gaps(points: FloatArray, place: Point) -> FloatArray:
+    x, y = points.T
+    gaps: FloatArray = np.hypot(x - place[0], y - place[1])
+    return gaps
 
 
 def _origin(frame: Frame, team: TeamStore) -> Point:

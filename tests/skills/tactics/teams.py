@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from robobt.skills.plan import Plan
 from robobt.skills.store import TeamStore
 from robobt.skills.tactics.agree import agree
 from robobt.world import GameState, RobotState
+from robobt.world.records import Mover, mover_records, movers
 from tests.skills.fixed_world import frame, robot
 from tests.skills.refereed import OPEN
 
@@ -24,6 +27,11 @@ THEIRS = (
     robot(-2.5, 1.5, number=3),
     robot(-2.0, -1.5, number=4),
 )
+
+
+def records_of(*robots: RobotState) -> Sequence[Mover]:
+    """Robots as compiled code sees them."""
+    return mover_records(movers(robots))
 
 
 class Agreement:

@@ -1,8 +1,8 @@
 from __future__ import annotations
 
+from collections.abc import Sequence
 from math import atan2, cos, hypot, pi, sin
 
-import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -17,17 +17,18 @@ from robobt.skills.tactics.chances import (
 from robobt.skills.tactics_settings import DEFAULT_TACTICS, TACTICS, applied
 from robobt.world import DIVISION_B
 from robobt.world.ball_model import DEFAULT_BALL
-from robobt.world.geometry import FloatArray, wrap_angle
-from robobt.world.records import MOVER_SIZE, movers
+from robobt.world.geometry import wrap_angle
+from robobt.world.records import Mover
 from tests.skills.fixed_world import robot
+from tests.skills.tactics.teams import records_of
 
 APPLIED = applied(DEFAULT_TACTICS, DIVISION_B, DEFAULT_BALL).view(TACTICS)[0]
 SPEEDS = DEFAULT_TACTICS.shot_speed, DEFAULT_TACTICS.fastest
-NOBODY = np.empty((0, MOVER_SIZE))
+NOBODY = records_of()
 
 
-def chance(x: float, y: float, opponents: FloatArray = NOBODY, delay: float = 0.0) -> float:
-    return shot_chance(x, y, delay, opponents, np.empty(2), APPLIED)
+def chance(x: float, y: float, opponents: Sequence[Mover] = NOBODY, delay: float = 0.0) -> float:
+    return shot_chance(x, y, delay, opponents, APPLIED).chance
 
 
 def test_an_open_goal_is_as_good_as_scored_from_nearby() -> None:
@@ -40,31 +41,29 @@ def test_it_falls_with_the_distance_and_is_nil_behind_the_goal_line() -> None:
 
 
 def test_a_goalkeeper_close_by_leaves_nothing() -> None:
-    assert chance(3.5, 0.0, movers([robot(3.7, 0.06), robot(3.7, -0.06)])) < 0.1
+    assert chance(3.5, 0.0, records_of(robot(3.7, 0.06), robot(3.7, -0.06))) < 0.1
 
 
 def test_the_aim_avoids_the_goalkeeper() -> None:
-    best = np.empty(2)
-    shot_chance(2.5, 0.0, 0.0, movers([robot(4.3, 0.3)]), best, APPLIED)
-    assert best[0] < -0.1
-    assert best[1] > 0.0
+    best = shot_chance(2.5, 0.0, 0.0, records_of(robot(4.3, 0.3)), APPLIED)
+    assert best.y < -0.1
+    assert best.half_angle > 0.0
 
 
 def test_a_goalkeeper_on_its_way_is_aimed_behind() -> None:
-    best = np.empty(2)
-    shot_chance(2.5, 0.0, 0.0, movers([robot(4.3, 0.0, velocity=(0.0, 1.5, 0.0))]), best, APPLIED)
-    assert best[0] < 0.0
+    moving = records_of(robot(4.3, 0.0, velocity=(0.0, 1.5, 0.0)))
+    assert shot_chance(2.5, 0.0, 0.0, moving, APPLIED).y < 0.0
 
 
 def test_with_time_the_defenders_get_between() -> None:
-    aside = movers([robot(4.2, -0.6), robot(3.4, -0.9)])
+    aside = records_of(robot(4.2, -0.6), robot(3.4, -0.9))
     assert chance(2.5, 1.0, aside) > chance(2.5, 1.0, aside, delay=1.0)
 
 
 @given(st.floats(-1.0, 4.0), st.floats(-2.5, 2.5), st.floats(2.0, 4.4), st.floats(-1.0, 1.0))
 def test_left_and_right_are_alike(x: float, y: float, ox: float, oy: float) -> None:
-    left = chance(x, y, movers([robot(ox, oy)]))
-    assert chance(x, -y, movers([robot(ox, -oy)])) == pytest.approx(left, abs=1e-9)
+    left = chance(x, y, records_of(robot(ox, oy)))
+    assert chance(x, -y, records_of(robot(ox, -oy))) == pytest.approx(left, abs=1e-9)
     assert 0.0 <= left <= 1.0
 
 
@@ -83,10 +82,10 @@ def test_a_ball_kicked_at_the_aim_leaves_where_it_should(vx: float, vy: float, w
 
 
 def test_the_ball_is_worth_more_near_the_goal_and_away_from_opponents() -> None:
-    def worth(x: float, y: float, opponents: FloatArray = NOBODY) -> float:
+    def worth(x: float, y: float, opponents: Sequence[Mover] = NOBODY) -> float:
         return point_worth(0.0, -2.0, x, y, 0.8, opponents, APPLIED)
 
     assert worth(2.5, 0.5) > worth(0.5, 0.5) > worth(-3.0, 0.5) > 0.0
-    near = movers([robot(-2.8, 0.6)])
+    near = records_of(robot(-2.8, 0.6))
     assert worth(-3.0, 0.5, near) < worth(-3.0, 0.5)
     assert hypot(worth(2.5, 0.5), 0.0) <= 1.0

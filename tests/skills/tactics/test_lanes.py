@@ -1,6 +1,5 @@
 from __future__ import annotations
 
-import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -20,10 +19,10 @@ from robobt.skills.tactics.lanes import (
 from robobt.skills.tactics_settings import DEFAULT_TACTICS, TACTICS, applied
 from robobt.world import DIVISION_B
 from robobt.world.ball_model import DEFAULT_BALL
-from robobt.world.records import MOVER_SIZE, movers
 from tests.skills.fixed_world import robot
+from tests.skills.tactics.teams import records_of
 
-NOBODY = np.empty((0, MOVER_SIZE))
+NOBODY = records_of()
 APPLIED = applied(DEFAULT_TACTICS, DIVISION_B, DEFAULT_BALL).view(TACTICS)[0]
 
 
@@ -49,7 +48,7 @@ def test_passes_reach_their_receiver_with_the_speed_that_was_planned_on_any_carp
 
 
 def chance(opponent: tuple[float, float], speed: float = 4.0, delay: float = 0.0) -> float:
-    return arrive_chance(0.0, 0.0, 3.0, 0.0, speed, delay, movers([robot(*opponent)]), NOBODY, -1, APPLIED)
+    return arrive_chance(0.0, 0.0, 3.0, 0.0, speed, delay, records_of(robot(*opponent)), NOBODY, -1, APPLIED)
 
 
 def test_a_lane_without_opponents_is_safe() -> None:
@@ -72,7 +71,7 @@ def test_a_faster_ball_and_an_earlier_kick_are_safer() -> None:
 
 
 def test_a_mate_in_the_lane_blocks_unless_it_is_the_receiver() -> None:
-    mates = movers([robot(1.5, 0.0)])
+    mates = records_of(robot(1.5, 0.0))
     blocked = arrive_chance(0.0, 0.0, 3.0, 0.0, 4.0, 0.0, NOBODY, mates, -1, APPLIED)
     assert arrive_chance(0.0, 0.0, 3.0, 0.0, 4.0, 0.0, NOBODY, mates, 0, APPLIED) > 5.0 * blocked
 
@@ -80,7 +79,7 @@ def test_a_mate_in_the_lane_blocks_unless_it_is_the_receiver() -> None:
 @given(st.floats(0.3, 2.7), st.floats(-2.0, 2.0))
 def test_both_sides_of_a_lane_are_alike(x: float, y: float) -> None:
     left, right = (
-        lane_margin(0.0, 0.0, 3.0, 0.0, 4.0, 0.0, movers([robot(x, side)]), APPLIED) for side in (y, -y)
+        lane_margin(0.0, 0.0, 3.0, 0.0, 4.0, 0.0, records_of(robot(x, side)), APPLIED) for side in (y, -y)
     )
     assert left == pytest.approx(right)
 
@@ -92,7 +91,7 @@ place, speed_along = st.floats(-4.0, 4.0), st.floats(-3.0, 3.0)
 def test_whoever_cannot_pass_by_a_time_passes_later(
     x: float, y: float, vx: float, vy: float, time: float
 ) -> None:
-    one = movers([robot(0.0, 0.0, velocity=(vx, vy, 0.0))])[0]
+    one = records_of(robot(0.0, 0.0, velocity=(vx, vy, 0.0)))[0]
     if cannot_pass_by(one, x, y, time, APPLIED):
         assert time_to_pass(one, x, y, APPLIED) > time
     # Far enough off nobody can, so that it tells something.
@@ -109,7 +108,7 @@ def test_a_chipped_pass_rolls_at_its_target(length: float) -> None:
 
 
 def chipped(opponent: tuple[float, float]) -> float:
-    return chip_chance(0.0, 0.0, 3.0, 0.0, 0.0, movers([robot(*opponent)]), NOBODY, -1, APPLIED)
+    return chip_chance(0.0, 0.0, 3.0, 0.0, 0.0, records_of(robot(*opponent)), NOBODY, -1, APPLIED)
 
 
 def test_a_chip_flies_over_whoever_stands_in_the_lane() -> None:
@@ -123,6 +122,6 @@ def test_a_chip_is_stopped_where_it_rises_and_where_it_comes_down(opponent: tupl
 
 
 def test_a_mate_where_a_chip_comes_down_blocks_it_unless_it_is_the_receiver() -> None:
-    mates = movers([robot(2.5, 0.0)])
+    mates = records_of(robot(2.5, 0.0))
     blocked = chip_chance(0.0, 0.0, 3.0, 0.0, 0.0, NOBODY, mates, -1, APPLIED)
     assert blocked < 0.2 < chip_chance(0.0, 0.0, 3.0, 0.0, 0.0, NOBODY, mates, 0, APPLIED)
