@@ -6,7 +6,9 @@ does until something else is clearly better.
 
 from __future__ import annotations
 
-from math import hypot, inf
+from collections.abc import Iterator
+from math import inf
+from typing import NamedTuple
 
 import numpy as np
 
@@ -20,7 +22,7 @@ from robobt.skills.tactics.defence import mark_places, threats, wall_places
 from robobt.skills.tactics.support import short_place, support_places
 from robobt.world.game import Restart
 from robobt.world.geometry import Point, distance
-from robobt.world.records import MOVER, ball_of, movers_of
+from robobt.world.records import MEETING, MOVER, ball_of, movers_of
 from robobt.world.rules import has_ball, owner
 from robobt.world.state import Frame, RobotState
 
@@ -72,7 +74,7 @@ def _look(frame: Frame, plan: Plan) -> None:
     plan.meetings = meetings(
         everybody, ball_of(ball), plan.rolling, slide, roll, field.half_length, field.half_width
     )
-    times = plan.meetings[:, 0].tolist()
+    times = plan.meetings.view(MEETING)["time"].ravel().tolist()
     ours, rest = times[: len(frame.own)], times[len(frame.own) :]
     plan.own_times = {robot.id: time for robot, time in zip(frame.own, ours, strict=True)}
     plan.their_times = {robot.id: time for robot, time in zip(frame.opponents, rest, strict=True)}
@@ -120,7 +122,7 @@ def _attacker(frame: Frame, team: TeamStore, plan: Plan) -> int | None:
             candidates.append(_NO_CANDIDATE)
         elif spot is not None:
             # Nobody has the ball yet, nor is beyond it.
-            time = hypot(robot.x - spot[0], robot.y - spot[1]) / 2.0
+            time = distance(spot, robot.position) / 2.0
             candidates.append(Candidate(time, ball.x, False))
         else:
             candidates.append(Candidate(plan.own_times[robot.id], robot.x, has_ball(robot, ball)))
@@ -148,15 +150,36 @@ def _meeting(frame: Frame, team: TeamStore, plan: Plan) -> Point | None:
     return None
 
 
+class _Job(NamedTuple):
+    """A task at a place; ``what`` is the number of the opponent to mark, or which part of the wall it is."""
+
+    task: Task
+    place: Point
+    what: int | None = None
+
+
 def _share_out(frame: Frame, team: TeamStore, plan: Plan, players: list[RobotState]) -> None:
     """Give everybody but the attacker a task and a place."""
-    tactics = plan.tactics
-    if abs(frame.ball.x) > tactics.ahead_from:
+    if abs(frame.ball.x) > plan.tactics.ahead_from:
         plan.ahead = frame.ball.x > 0.0
     team.threats = []
+    tasks = {} if team.attacker is None else {team.attacker: Task.ATTACK}
+    tasks |= _meant(frame, team, plan)
+    free = [robot for robot in players if robot.id not in tasks]
+    jobs = _jobs(frame, team, plan, len(players), len(free)) if free else []
+    marks = {}
+    for robot, job in _hand_out(frame, plan, free, jobs):
+        tasks[robot.id] = job.task
+        plan.places[robot.id] = job.place
+        if job.task is Task.MARK and job.what is not None:
+            marks[robot.id] = job.what
+    plan.tasks = tasks
+    plan.marks = team.marks = marks
+
+
+def _meant(frame: Frame, team: TeamStore, plan: Plan) -> dict[int, Task]:
+    """Send the receivers that passes are meant for to where they get them."""
     tasks: dict[int, Task] = {}
-    if team.attacker is not None:
-        tasks[team.attacker] = Task.ATTACK
     intended = plan.next_pass
     if intended is not None:
         plan.meant[intended.receiver] = frame.time, intended.target
@@ -165,53 +188,55 @@ def _share_out(frame: Frame, team: TeamStore, plan: Plan, players: list[RobotSta
         if (
             number in plan.players
             and number != team.attacker
-            and 0.0 <= frame.time - time < tactics.meant_for
+            and 0.0 <= frame.time - time < plan.tactics.meant_for
         ):
             tasks[number] = Task.RECEIVE
             plan.places[number] = target
-    free = [robot for robot in players if robot.id not in tasks]
-    jobs: list[tuple[Task, Point, int | None]] = []
-    if free:
-        walls = 0 if plan.without == "wall" else wall_size(plan, len(players), len(free))
-        jobs = [(Task.WALL, place, index) for index, place in enumerate(wall_places(frame, walls, tactics))]
-        plan.short = None if plan.without == "short_place" else short_place(frame, plan.short, tactics)
-        if (
-            plan.short is not None
-            and len(free) > len(jobs)
-            and not _near(intended, plan.short, tactics.same_place)
-        ):
-            jobs.append((Task.SUPPORT, plan.short, None))
-        left = len(free) - len(jobs)
-        if left and not plan.ours and plan.without != "marks":
-            dangerous = threats(frame, tactics, set(plan.marks.values()))
-            team.threats = [robot.id for robot in dangerous]
-            marks = mark_places(frame, dangerous[: left - 1 if plan.ahead else left], tactics)
-            jobs += [(Task.MARK, place, number) for number, place in marks]
-            left = len(free) - len(jobs)
-        if left:
-            jobs += [(Task.SUPPORT, place, None) for place in support_places(frame, team, plan, left)]
-    old_marks, old_tasks = plan.marks, plan.tasks
-    plan.marks = {}
-    if jobs and free:
-        waiting = {robot.id for robot in free}
-        rows = np.array([row for row, robot in enumerate(frame.own) if robot.id in waiting])
-        times = arrival_times(plan.own_movers, rows, np.array([place for _, place, _ in jobs]))
-        for i, robot in enumerate(free):
-            old = old_tasks.get(robot.id)
-            for j, (task, _, what) in enumerate(jobs):
-                if old is task and (task is not Task.MARK or old_marks.get(robot.id) == what):
-                    times[i, j] -= tactics.keep_gain
-        # Crossing over is worse than two short ways: the longest counts most.
-        cost = times + tactics.long_way * times * times
-        for row, column in assign(cost):
-            task, place, what = jobs[column]
-            number = free[row].id
-            tasks[number] = task
-            plan.places[number] = place
-            if task is Task.MARK and what is not None:
-                plan.marks[number] = what
-    plan.tasks = tasks
-    team.marks = plan.marks
+    return tasks
+
+
+def _jobs(frame: Frame, team: TeamStore, plan: Plan, players: int, free: int) -> list[_Job]:
+    """Return what there is to do for ``free`` of the players, the most urgent first."""
+    tactics = plan.tactics
+    walls = 0 if plan.without == "wall" else wall_size(plan, players, free)
+    jobs = [_Job(Task.WALL, place, index) for index, place in enumerate(wall_places(frame, walls, tactics))]
+    plan.short = None if plan.without == "short_place" else short_place(frame, plan.short, tactics)
+    if (
+        plan.short is not None
+        and free > len(jobs)
+        and not _near(plan.next_pass, plan.short, tactics.same_place)
+    ):
+        jobs.append(_Job(Task.SUPPORT, plan.short))
+    left = free - len(jobs)
+    if left and not plan.ours and plan.without != "marks":
+        dangerous = threats(frame, tactics, set(plan.marks.values()))
+        team.threats = [robot.id for robot in dangerous]
+        marks = mark_places(frame, dangerous[: left - 1 if plan.ahead else left], tactics)
+        jobs += [_Job(Task.MARK, place, number) for number, place in marks]
+        left = free - len(jobs)
+    if left:
+        jobs += [_Job(Task.SUPPORT, place) for place in support_places(frame, team, plan, left)]
+    return jobs
+
+
+def _hand_out(
+    frame: Frame, plan: Plan, free: list[RobotState], jobs: list[_Job]
+) -> Iterator[tuple[RobotState, _Job]]:
+    """Yield who does what, at the least cost; whoever did it before is preferred."""
+    if not jobs:
+        return
+    waiting = {robot.id for robot in free}
+    rows = np.array([row for row, robot in enumerate(frame.own) if robot.id in waiting])
+    times = arrival_times(plan.own_movers, rows, np.array([job.place for job in jobs]))
+    for i, robot in enumerate(free):
+        old = plan.tasks.get(robot.id)
+        for j, job in enumerate(jobs):
+            if old is job.task and (old is not Task.MARK or plan.marks.get(robot.id) == job.what):
+                times[i, j] -= plan.tactics.keep_gain
+    # Crossing over is worse than two short ways: the longest counts most.
+    cost = times + plan.tactics.long_way * times * times
+    for row, column in assign(cost):
+        yield free[row], jobs[column]
 
 
 def _near(intended: Pass | None, place: Point, gap: float) -> bool:
