@@ -4,24 +4,43 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from math import atan2, cos, hypot, inf, sin, sqrt
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from robobt.learning.opponents.challengers import CHALLENGE
 from robobt.learning.opponents.field_players import PLAYERS, SHOT, pass_speed, passed_to, shot_at
-from robobt.world.compiled import compilable, compiled, numbers_dtype, numbers_of
+from robobt.world.compiled import compilable, compiled, numbers_dtype, numbers_of, record_dtype
 from robobt.world.field import FieldGeometry
 from robobt.world.geometry import FloatArray, wrap_angle
 from robobt.world.limits import RobotLimits
 from robobt.world.rules import STOP_DISTANCE
 from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS
 
-TEAM, SPOT_X, SPOT_Y, TAKER, LEFT, PAUSE, LAST_TEAM = range(7)
-"""What is kept of an arena's restarts: whose the ball is, 1 blue's, -1 yellow's, 0 in play; where it was put
-[m]; who took the last restart and may not touch the ball, -1 for nobody; ticks left to take it; ticks for
-which an opponent too near is no new fault; whose the last restart was, 0 before the first."""
-RESTART = 7
+
+class RestartState(Protocol):
+    """An arena's restarts.
+
+    Attributes:
+        team: whose the ball is, 1 blue's, -1 yellow's, 0 in play.
+        spot_x, spot_y: where it was put [m].
+        taker: who took the last restart and may not touch the ball, -1 for nobody.
+        left: ticks left to take it.
+        pause: ticks for which an opponent too near is no new fault.
+        last_team: whose the last restart was, 0 before the first.
+    """
+
+    team: float
+    spot_x: float
+    spot_y: float
+    taker: float
+    left: float
+    pause: float
+    last_team: float
+
+
+RESTART = record_dtype(RestartState)
 
 _NOBODY, _KEEPER = -1, -2
 _STILL, _PASS = PLAYERS.index("still"), PLAYERS.index("pass")
@@ -71,7 +90,7 @@ class RestartPlayers:
         """Change these robots' commands (n, R, >= 6) for one tick.
 
         Args:
-            restarts: (n, RESTART).
+            restarts: (n, size(RESTART)) of :class:`RestartState`.
             robots: (n, R, 6) states.
             balls: (n, 4) states.
             commands: what they would do in play.
@@ -92,7 +111,8 @@ def _decide(
 ) -> None:
     field: FieldGeometry = field_.view(_FIELD)[0]
     for i in range(len(balls)):
-        team, barred, ball = restarts[i, TEAM], int(restarts[i, TAKER]), balls[i]
+        restart: RestartState = restarts.view(RESTART)[i, 0]
+        team, barred, ball = restart.team, int(restart.taker), balls[i]
         if team == 0.0 and barred < 0:
             continue
         first, last = (0, blue) if team > 0.0 else (blue, len(roles))

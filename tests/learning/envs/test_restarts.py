@@ -14,7 +14,6 @@ from robobt.learning.envs.soccer.judge import TWICE
 from robobt.learning.envs.soccer.settings import SoccerRules, SoccerSettings, SoccerStarts
 from robobt.learning.envs.soccer.suite import SUITE, instead, scripted
 from robobt.learning.envs.soccer.task import SoccerTask
-from robobt.learning.opponents.restart_players import LEFT, PAUSE, TAKER, TEAM
 from robobt.match.referee.automatic import AutomaticReferee
 from robobt.match.referee.events import EventKind
 from robobt.match.referee.referee import Referee
@@ -75,7 +74,7 @@ class Watched:
 
     @property
     def row(self) -> Any:
-        return self.task._restarts.rows[0]
+        return self.task._restarts.states[0]
 
     def play(self, *actions: list[float], until: Any, ticks: int = 400) -> Any:
         """Go on until something is so; nothing may end the episode before."""
@@ -99,8 +98,8 @@ class Watched:
 def test_the_ball_is_put_where_the_matchs_referee_puts_it(start: list[float], spot: Any) -> None:
     seen = Watched(start)
     made, before = seen.task, seen.task.shares
-    seen.play(KICK, STAY, until=lambda: seen.row[TEAM] != 0)
-    assert seen.row[TEAM] == -1
+    seen.play(KICK, STAY, until=lambda: seen.row["team"] != 0)
+    assert seen.row["team"] == -1
     referee = Referee(made.settings.field, RefereeSettings(opening="force_start", aimless_kick=False))
     games = [referee.update(frame).game for frame in seen.frames]
     assert all(game.in_play for game in games[:-1])
@@ -124,8 +123,8 @@ def thrown_in(mine: list[float], *others: list[float], **changes: Any) -> Watche
     """Blue's free kick at (0, 2.8): yellow's first robot, at (0, 2.5), has put the ball out."""
     yellow = [*at(0, 2.5, UP), *(number for other in others for number in other)]
     seen = Watched([*mine, *yellow, *in_mouth(0, 2.5, UP)], yellow=1 + len(others), **changes)
-    seen.play(STAY, KICK, *[STAY] * len(others), until=lambda: seen.row[TEAM] != 0)
-    assert seen.row[TEAM] == 1
+    seen.play(STAY, KICK, *[STAY] * len(others), until=lambda: seen.row["team"] != 0)
+    assert seen.row["team"] == 1
     return seen
 
 
@@ -134,7 +133,7 @@ PUSH = [0.3, 0.0, 0.0, -1.0]
 
 def test_who_pushes_the_ball_on_touches_it_twice() -> None:
     seen = thrown_in(at(0, 2.3, UP))
-    seen.play(PUSH, STAY, until=lambda: seen.row[TEAM] == -1)
+    seen.play(PUSH, STAY, until=lambda: seen.row["team"] == -1)
     assert seen.task.game(0).placement == pytest.approx((0.0, 2.8))
     assert seen.task.shares[0, 0] < -0.5
     # The match's referee says so in the same tick, and not before.
@@ -146,20 +145,20 @@ def test_who_pushes_the_ball_on_touches_it_twice() -> None:
 
 def test_it_may_do_so_where_that_is_no_rule() -> None:
     seen = thrown_in(at(0, 2.3, UP), rules={"restarts": True})
-    seen.play(PUSH, STAY, until=lambda: seen.row[TEAM] == 0)
-    seen.play(PUSH, STAY, until=lambda: seen.row[TEAM] != 0)
+    seen.play(PUSH, STAY, until=lambda: seen.row["team"] == 0)
+    seen.play(PUSH, STAY, until=lambda: seen.row["team"] != 0)
     assert seen.frames[-1].ball.y > 3.0
 
 
 def test_who_has_kicked_it_may_touch_it_once_another_has() -> None:
     seen = thrown_in(at(-0.3, 2.8), at(1.5, 2.8, np.pi))
-    seen.play([*PUSH[:3], 1.0], STAY, STAY, until=lambda: seen.row[TAKER] == 0)
+    seen.play([*PUSH[:3], 1.0], STAY, STAY, until=lambda: seen.row["taker"] == 0)
     assert seen.task.state()[0, -2:].tolist() == [0.0, 0.0]
     seen.play(STAY, STAY, STAY, until=lambda: seen.task.arenas.touch[0] == 2)
-    assert seen.row[TAKER] == -1
+    assert seen.row["taker"] == -1
     seen.task.arenas.place_ball(0, *seen.task.arenas.robots[0, 0, :2] + [0.0968, 0.0])
     seen.play(STAY, STAY, STAY, until=lambda: seen.task.arenas.touch[0] == 0)
-    assert seen.row[TEAM] == 0
+    assert seen.row["team"] == 0
 
 
 def test_an_opponent_that_comes_near_is_put_back_and_pays_for_it_every_two_seconds() -> None:
@@ -171,8 +170,8 @@ def test_an_opponent_that_comes_near_is_put_back_and_pays_for_it_every_two_secon
         if made.shares[0, 1] < -0.5:
             paid.append(tick)
             assert made.shares[0, 0] > 0.5
-            assert seen.row[LEFT] == 333
-        assert seen.row[TEAM] == 1
+            assert seen.row["left"] == 333
+        assert seen.row["team"] == 1
     assert nearest > STOP_DISTANCE + ROBOT_RADIUS - 0.02
     # It has to drive there again each time.
     assert [late - early for early, late in itertools.pairwise(paid)] == [pytest.approx(70, abs=3)] * 2
@@ -182,9 +181,9 @@ def test_an_opponent_that_comes_near_is_put_back_and_pays_for_it_every_two_secon
 def test_a_restart_that_nobody_takes_is_over_after_the_rules_time() -> None:
     seen = thrown_in(at(-2, 0), time_limit=1000)
     began = len(seen.frames)
-    seen.play(STAY, STAY, until=lambda: seen.row[TEAM] == 0)
+    seen.play(STAY, STAY, until=lambda: seen.row["team"] == 0)
     assert 0.03 * (len(seen.frames) - began) == pytest.approx(10.0, abs=0.03)
-    assert seen.row[TAKER] == -1
+    assert seen.row["taker"] == -1
     assert seen.task.game(0).in_play
 
 
@@ -200,7 +199,7 @@ def test_other_faults_are_the_others_free_kick(
     rules: dict[str, Any], start: list[float], action: list[float], spot: tuple[float, float]
 ) -> None:
     seen = Watched(start, rules=BOTH | rules)
-    seen.play(action, STAY, until=lambda: seen.row[TEAM] != 0)
+    seen.play(action, STAY, until=lambda: seen.row["team"] != 0)
     assert seen.task.game(0).restart_team is Team.YELLOW
     assert seen.task.game(0).placement == pytest.approx(spot, abs=2e-3)
     assert seen.task.shares[0, 0] < -0.5
@@ -246,14 +245,14 @@ def test_scripted_robots_take_their_restarts_and_leave_the_others_theirs(setting
     rules = SoccerRules(restarts=True, double_touch=True, held_by=None)
     made = SoccerTask(scripted(settings(rules=rules, time_limit=2000)), 8, seed=1)
     made.reset()
-    rows, taken, faults = made._restarts.rows, 0, 0
+    states, taken, faults = made._restarts.states, 0, 0
     for _ in range(500):
-        due, pause = rows[:, TEAM] != 0.0, rows[:, PAUSE].copy()
+        due, pause = states["team"] != 0.0, states["pause"].copy()
         made.step(np.zeros((8, 0)))
-        over = due & (rows[:, TEAM] == 0.0)
+        over = due & (states["team"] == 0.0)
         taken += int(over.sum())
-        assert (rows[over, LEFT] > 100.0).all()
-        faults += int((rows[:, PAUSE] > pause).sum())
+        assert (states["left"][over] > 100.0).all()
+        faults += int((states["pause"] > pause).sum())
         assert not (made._restarts.stops == TWICE).any()
     assert taken >= 4
     assert faults <= taken / 10

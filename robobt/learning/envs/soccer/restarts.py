@@ -15,22 +15,13 @@ from robobt.learning.envs.judging import is_over
 from robobt.learning.envs.soccer.judge import CARRIED, IN_AREA, OUT, TWICE
 from robobt.learning.envs.soccer.settings import SoccerSettings
 from robobt.learning.envs.task import BoolArray, FloatArray, IntArray
-from robobt.learning.opponents.restart_players import (
-    LAST_TEAM,
-    LEFT,
-    PAUSE,
-    RESTART,
-    SPOT_X,
-    SPOT_Y,
-    TAKER,
-    TEAM,
-)
+from robobt.learning.opponents.restart_players import RESTART, RestartState
 from robobt.match.referee.events import EventKind, RefereeEvent
 from robobt.match.referee.rules.base import AGAIN
 from robobt.match.referee.rules.restart_distances import POINT_TOLERANCE
 from robobt.match.referee.verdicts import resumption_after
 from robobt.sim.arenas import Arenas
-from robobt.sim.records import FLIGHT
+from robobt.sim.records import FLIGHT, RecordArray, size
 from robobt.world.compiled import compilable, compiled
 from robobt.world.division import division_of
 from robobt.world.game import OPEN_PLAY, GameState, RefereeCommand, Restart, Team
@@ -67,7 +58,7 @@ class Restarts:
     :data:`AGAIN` seconds.
 
     Attributes:
-        rows: (n, RESTART) what is kept of each arena.
+        rows: (n, size(RESTART)) of :class:`~robobt.learning.opponents.restart_players.RestartState`.
         fouls: (n,) which team broke a rule in this tick, 1 blue, -1 yellow, 0 nobody.
         stops: (n,) what stops play after this tick, 0 for nothing.
     """
@@ -81,15 +72,20 @@ class Restarts:
         self._edges = np.array(
             [field.half_length, field.half_width, field.defense_depth, field.defense_width]
         )
-        self.rows = np.zeros((n, RESTART))
+        self.rows = np.zeros((n, size(RESTART)))
         self.fouls = np.zeros(n)
         self.stops = np.zeros(n, dtype=np.int64)
         self._moved: BoolArray = np.zeros((n, robots + 1), dtype=np.bool_)
 
+    @property
+    def states(self) -> RecordArray:
+        """(n,) the ``rows`` by name."""
+        return self.rows.view(RESTART)[:, 0]
+
     def begin(self, which: IntArray) -> None:
         """Begin episodes, with the ball in play."""
         self.rows[which] = 0.0
-        self.rows[which, TAKER] = -1.0
+        self.states["taker"][which] = -1.0
 
     def watch(self, arenas: Arenas, ends: BoolArray) -> BoolArray:
         """Look at a tick: fill ``fouls`` and ``stops``; return who was put back, (n, R + 1)."""
@@ -119,7 +115,7 @@ class Restarts:
             following = resumption_after(self._field, event, (ball[0], ball[1]))
             assert following is not None
             sign = 0.0 if following.team is None else 1.0 if following.team is Team.BLUE else -1.0
-            self.rows[arena] = sign, *following.spot, -1.0, self._time, 0.0, sign
+            self.states[arena] = sign, *following.spot, -1.0, self._time, 0.0, sign
             balls[k, :2] = following.spot
             _clear(robots[k], self._blue, sign, *following.spot, self._edges)
         arenas.place(robots[..., :3], balls, which)
@@ -137,36 +133,36 @@ class Restarts:
             return RefereeEvent(0.0, left, team, None, *at)
         x, y = ball[:2]
         if kind == TWICE:
-            x, y = self.rows[arena, [SPOT_X, SPOT_Y]].tolist()
+            x, y = float(self.states["spot_x"][arena]), float(self.states["spot_y"][arena])
         elif kind == CARRIED:
             x, y = carried
         return RefereeEvent(0.0, _KINDS[kind], Team.BLUE if fault > 0.0 else Team.YELLOW, None, x, y)
 
     def tell(self, seen: FloatArray, which: IntArray, who: NDArray[np.int64]) -> None:
         """Fill what the robots ``who`` of the arenas ``which`` are told in observations (m, L * size)."""
-        each, rows = seen.reshape(len(which), len(who), -1), self.rows[which]
+        each, states = seen.reshape(len(which), len(who), -1), self.states[which]
         sides = np.where(who < self._blue, 1.0, -1.0)
         told = 1 + self._double_touch
         # Without -0.
-        each[..., -told] = rows[:, None, TEAM] * sides + 0.0
+        each[..., -told] = states["team"][:, None] * sides + 0.0
         if self._double_touch:
-            each[..., -1] = rows[:, None, TAKER] == who
+            each[..., -1] = states["taker"][:, None] == who
 
     def game(self, arena: int) -> GameState:
         """Return the state of the game in an arena, as blue sees it."""
-        row = self.rows[arena].tolist()
-        if row[LAST_TEAM] == 0.0:
+        state = self.states[arena]
+        if state["last_team"] == 0.0:
             return OPEN_PLAY
-        blue = row[LAST_TEAM] > 0.0
+        blue = state["last_team"] > 0.0
         command = RefereeCommand.DIRECT_FREE_BLUE if blue else RefereeCommand.DIRECT_FREE_YELLOW
-        if row[TEAM] == 0.0:
+        if state["team"] == 0.0:
             return GameState(command)
         return GameState(
             command,
             restart=Restart.FREE_KICK,
             restart_team=Team.BLUE if blue else Team.YELLOW,
-            placement=(row[SPOT_X], row[SPOT_Y]),
-            action_time=row[LEFT] * self._period,
+            placement=(float(state["spot_x"]), float(state["spot_y"])),
+            action_time=float(state["left"]) * self._period,
         )
 
 
@@ -190,33 +186,34 @@ def _watch(
 ) -> bool:
     any_moved = False
     for i in range(len(rows)):
-        row, ball = rows[i], balls[i]
+        state: RestartState = rows.view(RESTART)[i, 0]
+        ball = balls[i]
         fouls[i], stops[i], moved[i] = 0.0, 0, False
         if is_over(ends, i):
             continue
-        row[PAUSE] = max(row[PAUSE] - 1.0, 0.0)
-        if row[TEAM] != 0.0:
-            row[LEFT] -= 1.0
-            taken = hypot(ball[0] - row[SPOT_X], ball[1] - row[SPOT_Y]) > IN_PLAY_DISTANCE
-            if taken or row[LEFT] <= 0.0:
-                own = touch[i] >= 0 and (touch[i] < blue) == (row[TEAM] > 0.0)
-                row[TAKER] = touch[i] if double_touch and taken and own else -1.0
-                row[TEAM] = 0.0
+        state.pause = max(state.pause - 1.0, 0.0)
+        if state.team != 0.0:
+            state.left -= 1.0
+            taken = hypot(ball[0] - state.spot_x, ball[1] - state.spot_y) > IN_PLAY_DISTANCE
+            if taken or state.left <= 0.0:
+                own = touch[i] >= 0 and (touch[i] < blue) == (state.team > 0.0)
+                state.taker = touch[i] if double_touch and taken and own else -1.0
+                state.team = 0.0
             else:
-                first, last = (blue, robots.shape[1]) if row[TEAM] > 0.0 else (0, blue)
+                first, last = (blue, robots.shape[1]) if state.team > 0.0 else (0, blue)
                 for r in range(first, last):
-                    away = hypot(robots[i, r, 0] - row[SPOT_X], robots[i, r, 1] - row[SPOT_Y])
+                    away = hypot(robots[i, r, 0] - state.spot_x, robots[i, r, 1] - state.spot_y)
                     if away >= _AWAY - POINT_TOLERANCE:
                         continue
-                    if row[PAUSE] == 0.0:
-                        fouls[i], row[PAUSE], row[LEFT] = -row[TEAM], again, time
-                    _put_off(robots[i], r, row[SPOT_X], row[SPOT_Y], _AWAY, edges)
+                    if state.pause == 0.0:
+                        fouls[i], state.pause, state.left = -state.team, again, time
+                    _put_off(robots[i], r, state.spot_x, state.spot_y, _AWAY, edges)
                     robots[i, r, 3:] = 0.0
                     moved[i, r] = any_moved = True
-        elif row[TAKER] >= 0.0:
-            taker = int(row[TAKER])
+        elif state.taker >= 0.0:
+            taker = int(state.taker)
             if touch[i] != taker:
-                row[TAKER] = -1.0
+                state.taker = -1.0
                 continue
             me = robots[i, taker]
             hull = (

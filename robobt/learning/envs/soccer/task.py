@@ -29,7 +29,7 @@ from robobt.learning.opponents.challengers import Challengers
 from robobt.learning.opponents.field_players import FieldPlayers
 from robobt.learning.opponents.keepers import TRAITS
 from robobt.learning.opponents.plays import PlayedRobots
-from robobt.learning.opponents.restart_players import SPOT_X, SPOT_Y, TAKER, TEAM, RestartPlayers
+from robobt.learning.opponents.restart_players import RestartPlayers
 from robobt.learning.opponents.team_keeper import TeamKeeper
 from robobt.world.compiled import numbers_of
 from robobt.world.game import GameState
@@ -111,8 +111,9 @@ class SoccerTask(ArenaTask):
         Where the rules have restarts two entries follow: whose ball it is, 1 blue's, -1 yellow's, 0 in play;
         and which robot may not touch it after its restart, -1 for none.
         """
-        told = [self._restarts.rows[:, [TEAM, TAKER]]] if self.settings.rules.restarts else []
-        return np.concatenate((super().state(), *told), axis=1)
+        restarts = self._restarts.states
+        told = (restarts["team"], restarts["taker"]) if self.settings.rules.restarts else ()
+        return np.column_stack((super().state(), *told))
 
     def game(self, arena: int) -> GameState:
         """Return the state of the game in an arena as a referee would tell it, in field coordinates."""
@@ -230,13 +231,14 @@ class SoccerTask(ArenaTask):
         """Let play go on with a restart where it has been stopped; balls were at ``before`` (n, 2) [m]."""
         if len(which) == 0:
             return
-        rows, minds = self._restarts.rows, self._minds
+        states, minds = self._restarts.states, self._minds
         self._restarts.place(self.arenas, which, before[which], minds[which, TAKEN_X : TAKEN_Y + 1])
         # Nobody has had this ball yet, and nobody has brought it nearer to a goal.
         minds[which, LAST] = -1.0
         minds[which, BLUE_TICKS : YELLOW_TICKS + 1] = 0.0
         self._before[which, :, :SHOTS] = np.nan
-        self._progress["ball_x"][which], self._progress["ball_y"][which] = rows[which][:, [SPOT_X, SPOT_Y]].T
+        for axis in "xy":
+            self._progress[f"ball_{axis}"][which] = states[f"spot_{axis}"][which]
 
     def _announce(self, seen: FloatArray, which: IntArray) -> None:
         if self.settings.rules.restarts and self.learners:
