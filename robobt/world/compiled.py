@@ -149,8 +149,11 @@ def records(count: int, dtype: np.dtype[np.record]) -> Any:
     return np.empty(count, dtype=dtype)
 
 
-def numbers_of(settings: BaseModel) -> FloatArray:
-    """Return the numbers among a settings model's fields, (m,); None, for no limit, becomes infinity."""
-    names = numbers_dtype(type(settings)).names or ()
+def numbers_of(settings: BaseModel, dtype: np.dtype[np.void] | None = None) -> FloatArray:
+    """Return the numbers among a settings model's fields, (m,); None, for no limit, becomes infinity.
+
+    ``dtype`` is that of a class which the model is derived from, for its fields alone.
+    """
+    names = (numbers_dtype(type(settings)) if dtype is None else dtype).names or ()
     values = [getattr(settings, name) for name in names]
     return np.array([inf if value is None else value for value in values], dtype=np.float64)

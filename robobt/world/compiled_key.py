@@ -54,8 +54,9 @@ def _parts(function: object, seen: set[int]) -> Iterator[str]:
         elif isinstance(value, _CONSTANTS):
             yield f"{name}={_told(value)}"
         elif isinstance(value, type):
-            # A named tuple's fields are read by their places.
-            yield f"{name}={getattr(value, '_fields', ())}"
+            # A named tuple's fields are read by their places, an enumeration's members by their values.
+            members = {key: one.value for key, one in getattr(value, "__members__", {}).items()}
+            yield f"{name}={getattr(value, '_fields', ())}{members}"
         elif not str(getattr(value, "__module__", "")).startswith(("numpy", "numba")):
             yield from _parts(value, seen)
 

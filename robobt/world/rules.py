@@ -17,6 +17,7 @@ from robobt.world.compiled import compilable
 from robobt.world.field import FieldGeometry
 from robobt.world.game import Team
 from robobt.world.geometry import Point
+from robobt.world.records import Ball, Robot
 from robobt.world.state import (
     BALL_RADIUS,
     GOAL_HEIGHT,
@@ -185,7 +186,8 @@ def area_distance(field: FieldGeometry, defender: Team, x: float, y: float) -> f
 # Touches and possession.
 
 
-def hull_gap(robot: RobotState, ball: BallState) -> float:
+@compilable
+def hull_gap(robot: Robot, ball: Ball) -> float:
     """Return the gap between the robot's round hull and the ball [m]; below 0 where it lies in the mouth."""
     return hypot(robot.x - ball.x, robot.y - ball.y) - ROBOT_RADIUS - BALL_RADIUS
 
@@ -240,7 +242,8 @@ def carries(robot: RobotState, ball: BallState) -> bool:
     return has_ball(robot, ball) and hypot(ball.vx - robot.vx, ball.vy - robot.vy) < ALONG
 
 
-def keeps_ball(robot: RobotState, ball: BallState) -> bool:
+@compilable
+def keeps_ball(robot: Robot, ball: Ball) -> bool:
     """Return whether a robot that had the ball has not lost it yet: it is within :data:`KEPT_GAP`."""
     return hull_gap(robot, ball) <= KEPT_GAP
 

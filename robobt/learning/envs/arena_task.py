@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from functools import partial
-from typing import ClassVar, Literal
+from typing import ClassVar, Literal, cast
 
 import numpy as np
 from gymnasium.spaces import Box
@@ -13,21 +13,13 @@ from numpy.typing import ArrayLike, NDArray
 from robobt.learning.envs.bounds import BUMP, bounded, farthest, seen_speed, seen_turn
 from robobt.learning.envs.central import BALL, EACH, states_of
 from robobt.learning.envs.episodes import Episodes
-from robobt.learning.envs.judging import count, goals
+from robobt.learning.envs.judging import Ledger, count, goals
 from robobt.learning.envs.perception import Perception
 from robobt.learning.envs.progress import PROGRESS, progress_at
 from robobt.learning.envs.randomiser import Randomiser
 from robobt.learning.envs.settings import TaskSettings
 from robobt.learning.envs.starts import START_COLUMNS, StartPool, columns_of
-from robobt.learning.envs.task import (
-    SUCCESS,
-    TERMINATED,
-    TRUNCATED,
-    BoolArray,
-    FloatArray,
-    IntArray,
-    StepResult,
-)
+from robobt.learning.envs.task import BoolArray, Ends, FloatArray, IntArray, StepResult
 from robobt.learning.envs.tick import Tick, call, checked_ends, checked_starts, checked_terms, error_of
 from robobt.models.actions import fill_commands
 from robobt.sim.arenas import Arenas
@@ -117,7 +109,6 @@ class ArenaTask:
         self.action_size = len(self.learners) * self.action.size
         self.ended: Episodes | None = None
         self.arenas: Arenas
-        self._numbers = numbers_of(settings)
         self._scaling = numbers_of(self.action)
         self._kind = self.action.drives, self.action.kicks
         self._seed: int | None = seed
@@ -169,14 +160,14 @@ class ArenaTask:
     def begin(self, starts: FloatArray, which: IntArray) -> None:
         """Take from the ``starts`` (m, S) of the arenas ``which`` what there is besides robots and ball."""
 
-    def _judge(self, actions: FloatArray, rewards: FloatArray, ends: BoolArray) -> bool:  # noqa: ARG002
-        """Add a tick to ``rewards`` (n,) and ``ends`` (3, n); return whether any episode has ended.
+    def _judge(self, actions: FloatArray, rewards: FloatArray, ends: Ends) -> bool:  # noqa: ARG002
+        """Add a tick to ``rewards`` (n,) and ``ends``; return whether any episode has ended.
 
         An episode that had ended already is left as it is. Tasks whose reward and ends are compiled override
         it; here nothing but time ends an episode.
         """
         fired: BoolArray = np.any(self.arenas.kicked[:, self.learners], axis=1)
-        return count(self.settings.time_limit, fired, self._progress_rows, ends)
+        return count(self.settings.time_limit, fired, self._ledger(rewards, ends))
 
     def _optimum(self, starts: FloatArray, which: IntArray) -> FloatArray:  # noqa: ARG002
         """Return the shortest possible times from the starts [s]; nan where nobody knows one."""
@@ -279,6 +270,10 @@ class ArenaTask:
         """The terms of the episodes so far, (n,)."""
         return self._judged_terms if self._own_terms is None else self._own_terms
 
+    def _ledger(self, rewards: FloatArray, ends: Ends) -> Ledger:
+        """Return what a compiled judge takes as a plain tuple."""
+        return cast(Ledger, (self._progress_rows, self._term_rows, rewards, *ends))
+
     @property
     def ticks(self) -> FloatArray:
         """How long each arena's episode has gone on, (n,)."""
@@ -365,7 +360,7 @@ class ArenaTask:
             raise ValueError("an action is not finite")
         self._commands[:, self.learners] = filled.reshape(self.n, each, size(COMMAND))
         rewards = np.zeros(self.n)
-        ends: BoolArray = np.zeros((3, self.n), dtype=np.bool_)
+        ends = Ends.none(self.n)
         last = self.settings.decide_every - 1
         for tick in range(self.settings.decide_every):
             if not self._own_opponents:
@@ -383,9 +378,8 @@ class ArenaTask:
                 final = self._perception.look(self.arenas.robots, self.arenas.balls)
         self._announce(final, self._all)
         self._rewards = rewards
-        terminated, truncated, success = ends
-        self.ended = self._collect(np.flatnonzero(terminated | truncated), ends) if ended else None
-        return StepResult(final.copy(), rewards, terminated, truncated, final, success)
+        self.ended = self._collect(np.flatnonzero(ends.over), ends) if ended else None
+        return StepResult(final.copy(), rewards, ends.terminated, ends.truncated, final, ends.success)
 
     def _carried(self) -> FloatArray:
         """Return the commands, with the ball slowed down sideways as skills do, for the dribbler's sake."""
@@ -398,10 +392,10 @@ class ArenaTask:
         commands[:, learners, 1] = np.where(carrying, aside, commands[:, learners, 1])
         return commands
 
-    def _step_with_own(self, actions: FloatArray, rewards: FloatArray, ends: BoolArray) -> bool:
+    def _step_with_own(self, actions: FloatArray, rewards: FloatArray, ends: Ends) -> bool:
         """Step a tick and judge it by :meth:`reward` and :meth:`ends` where these are a subclass's own."""
         arenas, progress, blue = self.arenas, self._progress, self.blue
-        field, going = self.settings.field, ~(ends[TERMINATED] | ends[TRUNCATED])
+        field, going = self.settings.field, ~ends.over
         robots, balls = arenas.robots.copy(), arenas.balls.copy()
         arenas.step(self._randomiser.delayed(self._carried()))
         earned, judged_ends, total = np.zeros(self.n), ends.copy(), progress["total_reward"].copy()
@@ -413,22 +407,23 @@ class ArenaTask:
             contact=arenas.contact,
             kicked=arenas.kicked,
             touch=arenas.touch,
-            goal=goals(balls, arenas.balls, field.half_length, field.half_width, field.goal_width / 2),
+            goal=goals(balls, arenas.balls, numbers_of(field)),
             actions=actions,
             ticks=progress["ticks"],
-            success=judged_ends[SUCCESS] & going,
-            failed=judged_ends[TERMINATED] & ~judged_ends[SUCCESS] & going,
+            success=judged_ends.success & going,
+            failed=judged_ends.terminated & ~judged_ends.success & going,
             terms={name: self._judged_terms[name].copy() for name in self.terms.names or ()},
         )
         if self._own_ends:
             success, failed = checked_ends(self, tick, self.n)
             tick.success, tick.failed = success & going, failed & going & ~success
             over = tick.success | tick.failed
-            ends[SUCCESS] |= tick.success
-            ends[TERMINATED] |= over
-            ends[TRUNCATED] |= going & ~over & (tick.ticks >= self.settings.time_limit)
+            ends.success[:] |= tick.success
+            ends.terminated[:] |= over
+            ends.truncated[:] |= going & ~over & (tick.ticks >= self.settings.time_limit)
         else:
-            ends[:] = judged_ends
+            for part, judged in zip(ends, judged_ends, strict=True):
+                part[:] = judged
         terms = checked_terms(self, tick, self.n)
         if self._own_terms is None or self._own_terms.dtype.names != tuple(terms):
             self._own_terms = np.zeros(self.n, dtype=np.dtype([(name, np.float64) for name in terms]))
@@ -438,7 +433,7 @@ class ArenaTask:
             earned += term
         rewards[going] += earned[going]
         progress["total_reward"] = np.where(going, total + earned, total)
-        return bool((ends[TERMINATED] | ends[TRUNCATED]).any())
+        return bool(ends.over.any())
 
     def _seed_all(self, seed: int | None) -> None:
         seeds = [arena.spawn(3) for arena in np.random.SeedSequence(seed).spawn(self.n)]
@@ -486,13 +481,13 @@ class ArenaTask:
         self._announce(seen, which)
         return seen
 
-    def _collect(self, which: IntArray, ends: BoolArray) -> Episodes:
+    def _collect(self, which: IntArray, ends: Ends) -> Episodes:
         progress, period = self._progress[which], self.settings.period
         kick, ticks = progress["kick_tick"], progress["ticks"]
         return Episodes(
             start=self._starts[which],
-            success=ends[SUCCESS, which],
-            truncated=ends[TRUNCATED, which],
+            success=ends.success[which],
+            truncated=ends.truncated[which],
             ticks=ticks.astype(np.int64),
             time=ticks * period,
             optimum=self._optimal_time[which],

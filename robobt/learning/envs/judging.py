@@ -1,19 +1,74 @@
-"""What the judging of every task begins and ends with, for its compiled loop over the arenas."""
+"""What the judging of every task begins and ends with, for its compiled loop over the arenas.
+
+Python hands such a loop plain tuples of plain arrays, whose types numba finds fastest. The loop begins with
+``Ledger(*ledger_)`` or ``After(*after_)`` and views the arrays as records.
+"""
 
 from __future__ import annotations
 
+from typing import NamedTuple, cast
+
 import numpy as np
+from pydantic import BaseModel
 
 from robobt.learning.envs.progress import PROGRESS, Progress
-from robobt.learning.envs.task import SUCCESS, TERMINATED, TRUNCATED, BoolArray, FloatArray, IntArray
-from robobt.world.compiled import compilable, compiled
+from robobt.learning.envs.task import BoolArray, FloatArray, IntArray
+from robobt.sim.arenas import Arenas
+from robobt.sim.records import filled
+from robobt.world.compiled import (
+    compilable,
+    compiled,
+    compiled_inline,
+    compiled_lean,
+    numbers_dtype,
+    numbers_of,
+)
+from robobt.world.field import FieldGeometry
+from robobt.world.records import BALL, Ball
 from robobt.world.rules import goal_side
 
+FIELD = numbers_dtype(FieldGeometry)
 
-@compilable
-def is_over(ends: BoolArray, arena: int) -> bool:
+
+class After(NamedTuple):
+    """What ``n`` arenas with R robots each report after a tick; see :class:`~robobt.sim.arenas.Arenas`."""
+
+    robots: FloatArray  # (n, R, ROBOT_SIZE)
+    balls: FloatArray  # (n, size(BALL))
+    contact: BoolArray  # (n, R)
+    kicked: BoolArray  # (n, R)
+    touch: IntArray  # (n,)
+
+
+class Ledger(NamedTuple):
+    """What judging reads of the episodes in ``n`` arenas, and books."""
+
+    progress: FloatArray  # (n, size(PROGRESS))
+    terms: FloatArray  # (n, number of terms) of the reward, added to
+    rewards: FloatArray  # (n,) added to
+    terminated: BoolArray  # (n,) how they have ended, see Ends
+    truncated: BoolArray
+    success: BoolArray
+
+
+def after(arenas: Arenas) -> After:
+    """Return the arenas' arrays as a plain tuple."""
+    return cast(After, (arenas.robots, arenas.balls, arenas.contact, arenas.kicked, arenas.touch))
+
+
+def parameters(kind: np.dtype[np.void], **parts: float | BaseModel) -> FloatArray:
+    """Return the record ``kind`` of what a task is judged by as numbers; settings become those of theirs."""
+    numbers = {
+        name: tuple(numbers_of(part, kind[name])) if isinstance(part, BaseModel) else part
+        for name, part in parts.items()
+    }
+    return filled(kind, None, **numbers).reshape(1).view(np.float64)
+
+
+@compiled_inline
+def is_over(ledger: Ledger, arena: int) -> bool:
     """Return whether the arena's episode ended earlier in this decision: what follows does not count."""
-    return bool(ends[TERMINATED, arena] or ends[TRUNCATED, arena])
+    return bool(ledger.terminated[arena] or ledger.truncated[arena])
 
 
 @compilable
@@ -25,83 +80,74 @@ def begin_tick(episode: Progress, fired: bool) -> None:
 
 
 @compilable
-def goal_of(episode: Progress, ball: FloatArray, half_length: float, half_width: float, post: float) -> int:
+def goal_of(episode: Progress, ball: Ball, field: FieldGeometry) -> int:
     """Note where the ball is, and return the sign of x at the goal that it went into, 0 for none."""
-    side = goal_side(episode.ball_x, episode.ball_y, ball[0], ball[1], half_length, half_width, post)
-    episode.ball_x = ball[0]
-    episode.ball_y = ball[1]
+    half_length, half_width, post = field.length / 2, field.width / 2, field.goal_width / 2
+    side = goal_side(episode.ball_x, episode.ball_y, ball.x, ball.y, half_length, half_width, post)
+    episode.ball_x = ball.x
+    episode.ball_y = ball.y
     return side
 
 
-@compiled
-def count(time_limit: float, fired: BoolArray, progress: FloatArray, ends: BoolArray) -> bool:
+@compiled_lean
+def count(time_limit: float, fired: BoolArray, ledger_: Ledger) -> bool:
     """Count a tick in all arenas, which nothing ends but time; return whether any episode has ended.
 
     Args:
         time_limit: ticks after which episodes are truncated.
         fired: (n,) whether a learner has kicked.
-        progress: (n, ...) rows of ``PROGRESS``.
-        ends: (3, n) filled.
+        ledger_: of the episodes.
     """
-    episodes = progress.view(PROGRESS)
+    ledger = Ledger(*ledger_)
+    episodes = ledger.progress.view(PROGRESS)[..., 0]
     any_ended = False
     for i in range(len(fired)):
-        if not is_over(ends, i):
-            episode: Progress = episodes[i, 0]
+        if not is_over(ledger, i):
+            episode: Progress = episodes[i]
             begin_tick(episode, fired[i])
-            ends[TRUNCATED, i] = episode.ticks >= time_limit
-        any_ended = any_ended or is_over(ends, i)
+            ledger.truncated[i] = episode.ticks >= time_limit
+        any_ended = any_ended or is_over(ledger, i)
     return any_ended
 
 
 @compiled
-def goals(
-    before: FloatArray, after: FloatArray, half_length: float, half_width: float, post: float
-) -> IntArray:
+def goals(before_: FloatArray, after_: FloatArray, field_: FloatArray) -> IntArray:
     """Return the sign of x at the goal that each ball goes into in a tick, 0 for none, (n,).
 
     Args:
-        before: (n, 4) balls.
-        after: (n, 4).
-        half_length: of the field [m].
-        half_width: of the field [m].
-        post: where the posts are [m].
+        before_: (n, size(BALL)) balls.
+        after_: the same after it.
+        field_: numbers of the field.
     """
+    before, after = before_.view(BALL)[..., 0], after_.view(BALL)[..., 0]
+    field: FieldGeometry = field_.view(FIELD)[0]
+    half_length, half_width, post = field.length / 2, field.width / 2, field.goal_width / 2
     found = np.zeros(len(after), dtype=np.int64)
     for i in range(len(after)):
-        found[i] = goal_side(
-            before[i, 0], before[i, 1], after[i, 0], after[i, 1], half_length, half_width, post
-        )
+        one, other = before[i], after[i]
+        found[i] = goal_side(one.x, one.y, other.x, other.y, half_length, half_width, post)
     return found
 
 
-@compilable
+@compiled_inline
 def end_tick(
-    episode: Progress,
-    earned: float,
-    success: bool,
-    failed: bool,
-    time_limit: float,
-    arena: int,
-    rewards: FloatArray,
-    ends: BoolArray,
+    ledger: Ledger, arena: int, earned: float, success: bool, failed: bool, time_limit: float
 ) -> bool:
     """Book what a tick brought; return whether it was the episode's last. Success goes before the time limit.
 
     Args:
-        episode: so far.
+        ledger: of all arenas.
+        arena: index in it.
         earned: reward of the tick.
         success: whether the episode ends in success.
         failed: whether it ends otherwise, in a state from which nothing follows.
         time_limit: ticks after which it is truncated.
-        arena: index in the arrays.
-        rewards: (n,) added to.
-        ends: (3, n) filled.
     """
-    rewards[arena] += earned
+    episode: Progress = ledger.progress.view(PROGRESS)[arena, 0]
+    ledger.rewards[arena] += earned
     episode.total_reward += earned
     terminated = success or failed
-    ends[TERMINATED, arena] = terminated
-    ends[SUCCESS, arena] = success
-    ends[TRUNCATED, arena] = not terminated and episode.ticks >= time_limit
-    return bool(terminated or ends[TRUNCATED, arena])
+    ledger.terminated[arena] = terminated
+    ledger.success[arena] = success
+    ledger.truncated[arena] = not terminated and episode.ticks >= time_limit
+    return bool(terminated or ledger.truncated[arena])

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Protocol
+from typing import NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,8 +12,27 @@ FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
 IntArray = NDArray[np.int64]
 
-TERMINATED, TRUNCATED, SUCCESS = range(3)
-"""Rows of the (3, n) array that says how episodes ended."""
+
+class Ends(NamedTuple):
+    """How the episodes of ``n`` arenas have ended, (n,) each; see :class:`StepResult`."""
+
+    terminated: BoolArray
+    truncated: BoolArray
+    success: BoolArray
+
+    @classmethod
+    def none(cls, n: int) -> Ends:
+        """Return those of ``n`` episodes that go on."""
+        return cls(*np.zeros((3, n), dtype=np.bool_))
+
+    def copy(self) -> Ends:
+        """Return what does not change with these."""
+        return Ends(*(part.copy() for part in self))
+
+    @property
+    def over(self) -> BoolArray:
+        """Which have ended, (n,)."""
+        return self.terminated | self.truncated
 
 
 @dataclass(slots=True)

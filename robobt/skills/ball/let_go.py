@@ -32,8 +32,11 @@ class LetGo(Skill):
 
 
 @compilable
-def push_speed(me: Robot, ball: Ball) -> float:
-    """Return the speed with which the kicker pushes the ball off [m/s]; 0 where the robot only brakes."""
-    if ball.x <= 0.0 and cos(me.heading) <= 0.0:
+def push_speed(me: Robot, ball: Ball, side: float = 1.0) -> float:
+    """Return the speed with which the kicker pushes the ball off [m/s]; 0 where the robot only brakes.
+
+    ``side`` is 1 for a team that attacks towards +x, -1 for one that attacks towards -x.
+    """
+    if side * ball.x <= 0.0 and side * cos(me.heading) <= 0.0:
         return 0.0
     return max(0.0, cos(me.heading) * ball.vx + sin(me.heading) * ball.vy) + FASTER

@@ -13,7 +13,7 @@ from robobt.learning.opponents.goalkeepers import Goalkeepers
 from robobt.learning.opponents.keepers import KINDS
 from robobt.models.actions import command_of
 from robobt.sim import SimWorld
-from robobt.world import Placement, RobotId, Team
+from robobt.world import BallState, Placement, RobotId, RobotState, Team
 from robobt.world.scoring import score_on_goalkeeper_of
 
 HELD = 0.0968
@@ -99,11 +99,10 @@ def test_the_shipped_goalkeeper_is_the_shipped_goalkeeper() -> None:
 
 
 def test_a_kick_is_worth_what_the_goalkeeper_cannot_reach() -> None:
-    weights, ball = ScoreReward(), np.array([2.5, 0.0, 6.0, 0.0])
+    weights, field = ScoreReward(), ScoreOnGoalkeeperSettings().field
 
     def worth(y: float, vy: float = 0.0) -> float:
-        keeper = np.array([4.3, y, 0.0, 0.0, 0.0, 0.0])
-        return kicked(weights, 4.5, 0.5, keeper, np.array([*ball[:3], vy]))
+        return kicked(weights, field, RobotState(0, 4.3, y, 0.0), BallState(2.5, 0.0, 6.0, vy))
 
     assert worth(0.0) == weights.aimed
     # 1.8 m at 6 m/s are 0.3 s, in which 6 m/s^2 take it 0.27 m: a shot as far beside its hull is in doubt.

@@ -15,6 +15,7 @@ from robobt.config.validation import Settings
 from robobt.learning.envs.task import FloatArray
 from robobt.world.compiled import compilable
 from robobt.world.geometry import wrap_angle
+from robobt.world.records import Ball, Robot
 
 _NEAR = 0.2
 """From this gap on another robot is not near [m]."""
@@ -60,12 +61,11 @@ class GoToBallTerms(Protocol):
 @compilable
 def reward(
     weights: GoToBallReward,
-    robot: FloatArray,
-    ball: FloatArray,
+    robot: Robot,
+    ball: Ball,
     action: FloatArray,  # noqa: ARG001 - for terms to come
     reached: bool,
-    place: tuple[float, float],
-    facing: float,
+    place: tuple[float, float, float],
     gap: float,
     touched: bool,
     terms: GoToBallTerms,
@@ -74,19 +74,19 @@ def reward(
 
     Args:
         weights: of the terms.
-        robot: (6,) x, y, heading, vx, vy, omega after the step.
-        ball: (4,) x, y, vx, vy after it.
+        robot: after the step.
+        ball: after it.
         action: (3,) in [-1, 1], taken in it.
         reached: whether the robot has reached the ball.
-        place: where it is to drive [m]: the ball, or behind it in order to shoot.
-        facing: direction in which it is to face [rad].
+        place: where it is to drive [m], the ball or behind it in order to shoot, and which way to face [rad].
         gap: hull to hull of the nearest other robot, infinite without any [m].
         touched: whether it has touched one.
         terms: of the episode, added to.
     """
-    dx, dy = place[0] - robot[0], place[1] - robot[1]
+    x, y, facing = place
+    dx, dy = x - robot.x, y - robot.y
     distance = hypot(dx, dy)
-    angle = abs(wrap_angle(facing - robot[2]))
+    angle = abs(wrap_angle(facing - robot.heading))
     near_it = weights.distance * (5.0 * _BELL * exp(-0.5 * distance * distance) - 2.0)  # Eq. 8
     towards_it = weights.orientation * _BELL * exp(-2.0 * angle / (pi * pi))  # Eq. 9
     terms.distance += near_it
@@ -94,7 +94,7 @@ def reward(
     total = near_it + towards_it
     if distance > 0.0:
         # Relative to the ball: who pushes it along comes no closer.
-        closing = dx * (robot[3] - ball[2]) + dy * (robot[4] - ball[3])
+        closing = dx * (robot.vx - ball.vx) + dy * (robot.vy - ball.vy)
         closing = weights.closing * closing / distance
         terms.closing += closing
         total += closing

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from functools import partial
 from math import atan2, cos, hypot, inf, sin
+from typing import Protocol
 
 import numpy as np
 
@@ -17,34 +18,53 @@ from robobt.learning.envs.go_to_ball.settings import (
     GoToBallSettings,
 )
 from robobt.learning.envs.go_to_ball.starts import columns_of, go_to_ball_starts
-from robobt.learning.envs.judging import begin_tick, end_tick, is_over
+from robobt.learning.envs.judging import After, Ledger, after, begin_tick, end_tick, is_over, parameters
 from robobt.learning.envs.progress import PROGRESS, Progress
 from robobt.learning.envs.scripted import BEHIND, drive_and_face, drive_to_shoot, freest_way
-from robobt.learning.envs.task import BoolArray, FloatArray, IntArray
+from robobt.learning.envs.task import Ends, FloatArray, IntArray
 from robobt.learning.opponents.patrols import TRAITS, Patrols
 from robobt.skills.ball.go_to_ball import GoToBall
 from robobt.skills.base import Skill
 from robobt.world.avoiding import GO_TO_BALL_AMONG_ROBOTS, among_robots_rows
-from robobt.world.compiled import compiled, numbers_dtype, numbers_of, record_dtype
+from robobt.world.compiled import Index, compilable, compiled_lean, record_dtype
 from robobt.world.features import (
     GO_TO_BALL,
     GO_TO_BALL_TO_SHOOT,
     ObservationSpec,
     go_to_ball_rows,
 )
+from robobt.world.field import FieldGeometry
 from robobt.world.geometry import wrap_angle
+from robobt.world.records import BALL, ROBOT, Ball, Robot
 from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS
 
 _RULES = ("distance", "distance_facing", "infrared", "held")
-_DISTANCE, _FACING, _INFRARED, _HELD = range(4)
+_DISTANCE, _FACING, _INFRARED = (_RULES.index(rule) for rule in _RULES[:3])
 _KICK_SPEED = 6.0
 """Kick that is thought of when the ball is fetched in order to shoot [m/s]; that of the shipped Shoot."""
 _FROM_POST = 0.15
 """How far inside the posts it has to cross the line [m]."""
 TOUCHING = 2.0 * ROBOT_RADIUS + 0.005
 """Robots whose centres are nearer touch [m]: contact is seen once a tick."""
-_SETTINGS, _CONTACT = numbers_dtype(GoToBallSettings), numbers_dtype(ContactRule)
-_WEIGHTS, _TERMS = numbers_dtype(GoToBallReward), record_dtype(GoToBallTerms)
+
+
+class _Task(Protocol):
+    """What a tick is judged by.
+
+    ``rule`` is an index in ``_RULES``, ``dribbler`` whether that is on, ``to_shoot`` whether the ball is
+    fetched in order to shoot.
+    """
+
+    settings: GoToBallSettings
+    field: FieldGeometry
+    contact: ContactRule
+    weights: GoToBallReward
+    rule: Index
+    dribbler: float
+    to_shoot: float
+
+
+_TASK, _TERMS = record_dtype(_Task), record_dtype(GoToBallTerms)
 
 
 class GoToBallTask(ArenaTask):
@@ -66,10 +86,16 @@ class GoToBallTask(ArenaTask):
         self.robots = 1 + settings.others.count
         self.start_columns = columns_of(settings)
         super().__init__(settings, n, seed)
-        self._goal = (self.settings.field.half_length, self.settings.field.goal_width / 2)
-        self._contact = numbers_of(self.settings.contact)
-        self._rule = _RULES.index(self.settings.contact.rule)
-        self._weights = numbers_of(self.settings.reward)
+        self._judged_by = parameters(
+            _TASK,
+            settings=settings,
+            field=settings.field,
+            contact=settings.contact,
+            weights=settings.reward,
+            rule=_RULES.index(settings.contact.rule),
+            dribbler=self.action.dribbler,
+            to_shoot=settings.to_shoot,
+        )
 
     def sample(self, rng: np.random.Generator, count: int) -> FloatArray:
         """See :func:`~robobt.learning.envs.go_to_ball.starts.go_to_ball_starts`."""
@@ -79,7 +105,7 @@ class GoToBallTask(ArenaTask):
         """See :attr:`observation`."""
         if self.robots > 1:
             return among_robots_rows(robots, balls)
-        return go_to_ball_rows(robots[:, 0], balls, self._goal[0], self.observation_size)
+        return go_to_ball_rows(robots[:, 0], balls, self.settings.field.half_length, self.observation_size)
 
     @property
     def ranges(self) -> dict[str, float]:
@@ -133,25 +159,8 @@ class GoToBallTask(ArenaTask):
         if self.robots > 1:
             self._patrols.decide(self.arenas.robots, commands[:, 1:])
 
-    def _judge(self, actions: FloatArray, rewards: FloatArray, ends: BoolArray) -> bool:
-        arenas = self.arenas
-        return _judge(
-            self._numbers,
-            self._contact,
-            self._weights,
-            self._rule,
-            self.action.dribbler,
-            self._to_shoot,
-            *self._goal,
-            actions,
-            arenas.robots,
-            arenas.balls,
-            arenas.contact,
-            self._progress_rows,
-            self._term_rows,
-            rewards,
-            ends,
-        )
+    def _judge(self, actions: FloatArray, rewards: FloatArray, ends: Ends) -> bool:
+        return _judge(self._judged_by, actions, after(self.arenas), self._ledger(rewards, ends))
 
     def _optimum(self, starts: FloatArray, which: IntArray) -> FloatArray:
         settings = self.settings
@@ -174,74 +183,69 @@ class GoToBallAmongRobotsTask(GoToBallTask):
     Settings = GoToBallAmongRobotsSettings
 
 
-@compiled
-def _would_score(heading: float, ball: FloatArray, goal_x: float, post_y: float) -> bool:
-    """Return whether the ball would go in, kicked now: along the heading, with its sideways velocity."""
-    c, s = cos(heading), sin(heading)
-    sideways = c * ball[3] - s * ball[2]
-    vx, vy = _KICK_SPEED * c - sideways * s, _KICK_SPEED * s + sideways * c
-    crossing = ball[1] + vy / vx * (goal_x - ball[0]) if vx > 0.0 else inf
-    return bool(abs(crossing) <= post_y - _FROM_POST)
-
-
-@compiled
-def _judge(
-    settings_: FloatArray,
-    contact_: FloatArray,
-    weights_: FloatArray,
-    rule: int,
-    dribbler: bool,
-    to_shoot: bool,
-    goal_x: float,
-    post_y: float,
-    actions: FloatArray,
-    robots: FloatArray,
-    balls: FloatArray,
-    in_mouth: BoolArray,
-    progress: FloatArray,
-    terms_: FloatArray,
-    rewards: FloatArray,
-    ends: BoolArray,
-) -> bool:
-    settings: GoToBallSettings = settings_.view(_SETTINGS)[0]
-    contact: ContactRule = contact_.view(_CONTACT)[0]
-    weights: GoToBallReward = weights_.view(_WEIGHTS)[0]
-    episodes, terms = progress.view(PROGRESS), terms_.view(_TERMS)
+@compiled_lean
+def _judge(task_: FloatArray, actions: FloatArray, after_: After, ledger_: Ledger) -> bool:
+    task: _Task = task_.view(_TASK)[0]
+    arenas, ledger = After(*after_), Ledger(*ledger_)
+    robots, balls = arenas.robots.view(ROBOT)[..., 0], arenas.balls.view(BALL)[..., 0]
+    episodes, terms = ledger.progress.view(PROGRESS)[..., 0], ledger.terms.view(_TERMS)[..., 0]
     any_ended = False
     for i in range(len(balls)):
-        if is_over(ends, i):
+        if is_over(ledger, i):
             any_ended = True
             continue
-        robot, ball = robots[i, 0], balls[i]
-        episode: Progress = episodes[i, 0]
+        robot, ball, in_mouth = robots[i, 0], balls[i], arenas.contact[i, 0]
+        episode: Progress = episodes[i]
         begin_tick(episode, False)
-        episode.ticks_held = episode.ticks_held + 1 if in_mouth[i, 0] and dribbler else 0.0
-        if rule in (_DISTANCE, _FACING):
-            dx, dy = ball[0] - robot[0], ball[1] - robot[1]
-            reached = hypot(dx, dy) <= contact.distance
-            if reached and rule == _FACING:
-                reached = abs(wrap_angle(atan2(dy, dx) - robot[2])) <= contact.angle
-        elif rule == _INFRARED:
-            reached = in_mouth[i, 0]
-        else:
-            reached = episode.ticks_held >= contact.ticks
-        place_x, place_y = ball[0], ball[1]
-        facing = atan2(ball[1] - robot[1], ball[0] - robot[0])
-        if to_shoot:
-            facing = atan2(-ball[1], goal_x - ball[0])
-            place_x -= BEHIND * cos(facing)
-            place_y -= BEHIND * sin(facing)
-            reached = reached and _would_score(robot[2], ball, goal_x, post_y)
-        if contact.max_speed is not None:
-            reached = reached and hypot(robot[3], robot[4]) <= contact.max_speed
+        episode.ticks_held = episode.ticks_held + 1 if in_mouth and task.dribbler else 0.0
         nearest = inf
-        for other in range(1, robots.shape[1]):
-            nearest = min(nearest, hypot(robots[i, other, 0] - robot[0], robots[i, other, 1] - robot[1]))
+        for k in range(1, robots.shape[1]):
+            other = robots[i, k]
+            nearest = min(nearest, hypot(other.x - robot.x, other.y - robot.y))
         touched = nearest < TOUCHING
-        reached = reached and not touched
+        reached = _reached(task, robot, ball, in_mouth, episode.ticks_held) and not touched
         gap = nearest - 2.0 * ROBOT_RADIUS
-        place = place_x, place_y
-        earned = reward(weights, robot, ball, actions[i], reached, place, facing, gap, touched, terms[i, 0])
-        if end_tick(episode, earned, reached, touched, settings.time_limit, i, rewards, ends):
+        place = _place(task, robot, ball)
+        earned = reward(task.weights, robot, ball, actions[i], reached, place, gap, touched, terms[i])
+        if end_tick(ledger, i, earned, reached, touched, task.settings.time_limit):
             any_ended = True
     return any_ended
+
+
+@compilable
+def _reached(task: _Task, robot: Robot, ball: Ball, in_mouth: bool, ticks_held: float) -> bool:
+    """Return whether the robot has reached the ball, whomever it touches."""
+    contact = task.contact
+    if task.rule in (_DISTANCE, _FACING):
+        dx, dy = ball.x - robot.x, ball.y - robot.y
+        reached = hypot(dx, dy) <= contact.distance
+        if reached and task.rule == _FACING:
+            reached = abs(wrap_angle(atan2(dy, dx) - robot.heading)) <= contact.angle
+    elif task.rule == _INFRARED:
+        reached = in_mouth
+    else:
+        reached = ticks_held >= contact.ticks
+    if task.to_shoot:
+        reached = reached and _would_score(robot.heading, ball, task.field)
+    if contact.max_speed is not None:
+        reached = reached and hypot(robot.vx, robot.vy) <= contact.max_speed
+    return reached
+
+
+@compilable
+def _place(task: _Task, robot: Robot, ball: Ball) -> tuple[float, float, float]:
+    """Return where the robot is to drive [m], and the direction in which it is to face there [rad]."""
+    if not task.to_shoot:
+        return ball.x, ball.y, atan2(ball.y - robot.y, ball.x - robot.x)
+    facing = atan2(-ball.y, task.field.length / 2 - ball.x)
+    return ball.x - BEHIND * cos(facing), ball.y - BEHIND * sin(facing), facing
+
+
+@compilable
+def _would_score(heading: float, ball: Ball, field: FieldGeometry) -> bool:
+    """Return whether the ball would go in, kicked now: along the heading, with its sideways velocity."""
+    c, s = cos(heading), sin(heading)
+    sideways = c * ball.vy - s * ball.vx
+    vx, vy = _KICK_SPEED * c - sideways * s, _KICK_SPEED * s + sideways * c
+    crossing = ball.y + vy / vx * (field.length / 2 - ball.x) if vx > 0.0 else inf
+    return bool(abs(crossing) <= field.goal_width / 2 - _FROM_POST)

@@ -1,7 +1,7 @@
 """The reward of Score-On-Goalkeeper: what a weight is called and what it weighs.
 
 For a new term add its weight to :class:`ScoreReward`, its name to :class:`ScoreTerms` and the term to
-:func:`reward`.
+:func:`reward` or :func:`end_reward`.
 """
 
 from __future__ import annotations
@@ -13,8 +13,9 @@ from pydantic import Field
 
 from robobt.config.validation import Settings
 from robobt.learning.envs.progress import Progress
-from robobt.learning.envs.task import FloatArray
 from robobt.world.compiled import compilable
+from robobt.world.field import FieldGeometry
+from robobt.world.records import Ball, Robot
 from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS
 
 _SLOW = 1.0
@@ -69,46 +70,44 @@ class ScoreTerms(Protocol):
 @compilable
 def reward(
     weights: ScoreReward,
-    posts: tuple[float, float],
-    robots: FloatArray,
-    ball: FloatArray,
+    field: FieldGeometry,
+    robot: Robot,
+    keeper: Robot,
+    ball: Ball,
     held: bool,
     fired: bool,
-    goal: bool,
-    lost: bool,
     progress: Progress,
     terms: ScoreTerms,
 ) -> float:
-    """Compute the reward of a tick.
+    """Compute the reward of a tick but for how it ends the episode.
 
     Args:
         weights: of the terms.
-        posts: where the attacked goal's line is, and how far its posts are from the field's long axis [m].
-        robots: (2, 6) x, y, heading, vx, vy, omega of attacker and goalkeeper after the tick.
-        ball: (4,) x, y, vx, vy after it.
+        field: whose goal at +x is attacked.
+        robot: the attacker after the tick.
+        keeper: the goalkeeper after it.
+        ball: after it.
         held: whether the ball lies in the attacker's mouth.
         fired: whether the attacker's kicker fired in it.
-        goal: whether a goal was scored.
-        lost: whether the episode ended otherwise.
         progress: of the episode; keeps the potential, which pays for what the state is worth more than
             the one before.
         terms: of the episode, added to.
     """
-    (goal_x, post_y), robot, keeper = posts, robots[0], robots[1]
+    goal_x = field.length / 2
     terms.time -= weights.time
     total = -weights.time
     if fired:
-        earned = kicked(weights, goal_x, post_y, keeper, ball)
+        earned = kicked(weights, field, keeper, ball)
         terms.kick += earned
         total += earned
         progress.kick_rewarded = 1.0 if earned > 0.0 else 0.0
-    elif held or hypot(ball[2], ball[3]) < _SLOW:
+    elif held or hypot(ball.vx, ball.vy) < _SLOW:
         progress.kick_rewarded = 0.0
-    potential = -weights.approach * hypot(ball[0] - robot[0], ball[1] - robot[1])
+    potential = -weights.approach * hypot(ball.x - robot.x, ball.y - robot.y)
     # The robot's way, not the ball's: a ball that is kicked at nothing gets nearer to the goal too.
-    potential -= weights.advance * max(hypot(goal_x - robot[0], robot[1]), _NEAR)
+    potential -= weights.advance * max(hypot(goal_x - robot.x, robot.y), _NEAR)
     if held:
-        potential += weights.facing * (1.0 + cos(atan2(-robot[1], goal_x - robot[0]) - robot[2]))
+        potential += weights.facing * (1.0 + cos(atan2(-robot.y, goal_x - robot.x) - robot.heading))
     if progress.kick_rewarded > 0.0:
         # Who shoots at the goal gives the ball away, and shall not pay for that.
         potential = nan
@@ -117,26 +116,33 @@ def reward(
         terms.potential += gained
         total += gained
     progress.potential = potential
-    if goal:
-        terms.goal += weights.goal
-        total += weights.goal
-    elif lost:
-        terms.lost -= weights.lost
-        total -= weights.lost
     return total
 
 
 @compilable
-def kicked(weights: ScoreReward, goal_x: float, post_y: float, keeper: FloatArray, ball: FloatArray) -> float:
+def end_reward(weights: ScoreReward, goal: bool, lost: bool, terms: ScoreTerms) -> float:
+    """Compute what the end of an episode by a goal, or ``lost`` by another end, is worth; 0 for none."""
+    if goal:
+        terms.goal += weights.goal
+        return weights.goal
+    if lost:
+        terms.lost -= weights.lost
+        return -weights.lost
+    return 0.0
+
+
+@compilable
+def kicked(weights: ScoreReward, field: FieldGeometry, keeper: Robot, ball: Ball) -> float:
     """Judge a kick by where it goes, as soon as the ball has left."""
-    if ball[2] <= 0.0:
+    goal_x, post_y = field.length / 2, field.goal_width / 2
+    if ball.vx <= 0.0:
         return -weights.miss
-    if abs(ball[1] + (goal_x - ball[0]) * ball[3] / ball[2]) > post_y - BALL_RADIUS:
+    if abs(ball.y + (goal_x - ball.x) * ball.vy / ball.vx) > post_y - BALL_RADIUS:
         return -weights.miss
     # Where the goalkeeper stands beside the shot's line, and how long the ball takes to get there.
-    fast = hypot(ball[2], ball[3])
-    dx, dy = keeper[0] - ball[0], keeper[1] - ball[1]
-    ahead, beside = (dx * ball[2] + dy * ball[3]) / fast, abs(dy * ball[2] - dx * ball[3]) / fast
+    fast = hypot(ball.vx, ball.vy)
+    dx, dy = keeper.x - ball.x, keeper.y - ball.y
+    ahead, beside = (dx * ball.vx + dy * ball.vy) / fast, abs(dy * ball.vx - dx * ball.vy) / fast
     lacking = beside - ROBOT_RADIUS - BALL_RADIUS
     time = max(ahead, 0.1) / fast
     beyond = lacking - 0.5 * weights.reach * time * time

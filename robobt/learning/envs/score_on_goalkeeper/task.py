@@ -3,27 +3,49 @@
 from __future__ import annotations
 
 from math import hypot, isnan, nan
+from typing import Protocol
 
 import numpy as np
 
 from robobt.learning.envs.arena_task import ArenaTask
 from robobt.learning.envs.bounds import BUMP, farthest, seen_speed, seen_turn
-from robobt.learning.envs.judging import begin_tick, end_tick, goal_of, is_over
+from robobt.learning.envs.judging import (
+    After,
+    Ledger,
+    after,
+    begin_tick,
+    end_tick,
+    goal_of,
+    is_over,
+    parameters,
+)
 from robobt.learning.envs.progress import PROGRESS, Progress
-from robobt.learning.envs.score_on_goalkeeper.rewards import ScoreReward, ScoreTerms, reward
+from robobt.learning.envs.score_on_goalkeeper.rewards import ScoreReward, ScoreTerms, end_reward, reward
 from robobt.learning.envs.score_on_goalkeeper.settings import ScoreOnGoalkeeperSettings
 from robobt.learning.envs.score_on_goalkeeper.starts import COLUMNS, score_starts
-from robobt.learning.envs.task import BoolArray, FloatArray, IntArray
+from robobt.learning.envs.task import BoolArray, Ends, FloatArray, IntArray
 from robobt.learning.opponents.keepers import TRAITS, Keepers
-from robobt.world.compiled import compiled, numbers_dtype, numbers_of, record_dtype
+from robobt.world.compiled import compilable, compiled_lean, record_dtype
 from robobt.world.features import ObservationSpec
 from robobt.world.field import FieldGeometry
+from robobt.world.records import BALL, ROBOT, Ball, Robot
 from robobt.world.rules import in_area, is_out
 from robobt.world.scoring import SCORE_ON_GOALKEEPER, score_on_goalkeeper_rows
 from robobt.world.state import ROBOT_RADIUS
 
-_SETTINGS, _FIELD = numbers_dtype(ScoreOnGoalkeeperSettings), numbers_dtype(FieldGeometry)
-_WEIGHTS, _TERMS = numbers_dtype(ScoreReward), record_dtype(ScoreTerms)
+_ATTACKER, _KEEPER = 0, 1
+"""Indices of the robots."""
+
+
+class _Task(Protocol):
+    """What a tick is judged by."""
+
+    settings: ScoreOnGoalkeeperSettings
+    field: FieldGeometry
+    weights: ScoreReward
+
+
+_TASK, _TERMS = record_dtype(_Task), record_dtype(ScoreTerms)
 
 
 class ScoreOnGoalkeeperTask(ArenaTask):
@@ -43,8 +65,7 @@ class ScoreOnGoalkeeperTask(ArenaTask):
         super().__init__(settings, n, seed)
         field = self.settings.field
         self._goal = field.half_length, field.goal_width / 2
-        self._field = numbers_of(field)
-        self._weights = numbers_of(self.settings.reward)
+        self._judged_by = parameters(_TASK, settings=self.settings, field=field, weights=self.settings.reward)
 
     def sample(self, rng: np.random.Generator, count: int) -> FloatArray:
         """See :func:`~robobt.learning.envs.score_on_goalkeeper.starts.score_starts`."""
@@ -86,74 +107,55 @@ class ScoreOnGoalkeeperTask(ArenaTask):
     def oppose(self, commands: FloatArray) -> None:
         """See :meth:`ArenaTask.oppose`."""
         arenas = self.arenas
-        self._keepers.decide(arenas.robots, arenas.balls, arenas.contact, commands[:, 1])
+        self._keepers.decide(arenas.robots, arenas.balls, arenas.contact, commands[:, _KEEPER])
 
-    def _judge(self, actions: FloatArray, rewards: FloatArray, ends: BoolArray) -> bool:  # noqa: ARG002
-        arenas = self.arenas
-        return _judge(
-            self._numbers,
-            self._field,
-            self._weights,
-            arenas.robots,
-            arenas.balls,
-            arenas.contact,
-            arenas.kicked,
-            arenas.touch,
-            self._keepers.kept,
-            self._progress_rows,
-            self._term_rows,
-            rewards,
-            ends,
-        )
+    def _judge(self, actions: FloatArray, rewards: FloatArray, ends: Ends) -> bool:  # noqa: ARG002
+        return _judge(self._judged_by, self._keepers.kept, after(self.arenas), self._ledger(rewards, ends))
 
 
-@compiled
-def _judge(
-    settings_: FloatArray,
-    field_: FloatArray,
-    weights_: FloatArray,
-    robots: FloatArray,
-    balls: FloatArray,
-    contact: BoolArray,
-    kicked: BoolArray,
-    touch: IntArray,
-    kept: BoolArray,
-    progress: FloatArray,
-    terms_: FloatArray,
-    rewards: FloatArray,
-    ends: BoolArray,
-) -> bool:
-    settings: ScoreOnGoalkeeperSettings = settings_.view(_SETTINGS)[0]
-    field: FieldGeometry = field_.view(_FIELD)[0]
-    weights: ScoreReward = weights_.view(_WEIGHTS)[0]
-    episodes, terms = progress.view(PROGRESS), terms_.view(_TERMS)
-    half_length, half_width, post = field.length / 2, field.width / 2, field.goal_width / 2
-    depth, width = field.defense_depth, field.defense_width
+@compiled_lean
+def _judge(task_: FloatArray, kept: BoolArray, after_: After, ledger_: Ledger) -> bool:
+    task: _Task = task_.view(_TASK)[0]
+    arenas, ledger = After(*after_), Ledger(*ledger_)
+    robots, balls = arenas.robots.view(ROBOT)[..., 0], arenas.balls.view(BALL)[..., 0]
+    episodes, terms = ledger.progress.view(PROGRESS)[..., 0], ledger.terms.view(_TERMS)[..., 0]
+    settings = task.settings
     any_ended = False
     for i in range(len(balls)):
-        if is_over(ends, i):
+        if is_over(ledger, i):
             any_ended = True
             continue
-        robot, ball, held, fired = robots[i, 0], balls[i], contact[i, 0], kicked[i, 0]
-        episode: Progress = episodes[i, 0]
+        episode: Progress = episodes[i]
+        robot, keeper, ball = robots[i, _ATTACKER], robots[i, _KEEPER], balls[i]
+        held, fired = arenas.contact[i, _ATTACKER], arenas.kicked[i, _ATTACKER]
         begin_tick(episode, fired)
-        episode.ticks_held = episode.ticks_held + 1 if contact[i, 1] else 0.0
-        goal = goal_of(episode, ball, half_length, half_width, post) > 0
-        lost = is_out(ball[0], ball[1], half_length, half_width) or kept[i]
-        lost = lost or episode.ticks_held >= settings.held_by_keeper or (settings.saved and touch[i] == 1)
-        # The rules: no touching the ball in their defence area, not even partly inside.
-        lost = lost or in_area(robot[0], robot[1], half_length, depth, width)
-        lost = lost or (held and in_area(robot[0], robot[1], half_length, depth, width, ROBOT_RADIUS))
-        if not held:
-            episode.carried_x = episode.carried_y = nan
-        elif isnan(episode.carried_x):
-            episode.carried_x, episode.carried_y = ball[0], ball[1]
-        elif settings.dribbling is not None:
-            way = hypot(ball[0] - episode.carried_x, ball[1] - episode.carried_y)
-            lost = lost or way > settings.dribbling
+        episode.ticks_held = episode.ticks_held + 1 if arenas.contact[i, _KEEPER] else 0.0
+        goal = goal_of(episode, ball, task.field) > 0
+        lost = kept[i] or (settings.saved and arenas.touch[i] == _KEEPER)
+        lost = _breaks_a_rule(task, robot, ball, held, episode) or lost
         lost = lost and not goal
-        posts = half_length, post
-        earned = reward(weights, posts, robots[i], ball, held, fired, goal, lost, episode, terms[i, 0])
-        if end_tick(episode, earned, goal, lost, settings.time_limit, i, rewards, ends):
+        earned = reward(task.weights, task.field, robot, keeper, ball, held, fired, episode, terms[i])
+        earned += end_reward(task.weights, goal, lost, terms[i])
+        if end_tick(ledger, i, earned, goal, lost, settings.time_limit):
             any_ended = True
     return any_ended
+
+
+@compilable
+def _breaks_a_rule(task: _Task, robot: Robot, ball: Ball, held: bool, episode: Progress) -> bool:
+    """Note where the ball is carried; return whether it is out, or the attacker may not do what it does."""
+    field, settings = task.field, task.settings
+    half_length, half_width = field.length / 2, field.width / 2
+    depth, width = field.defense_depth, field.defense_width
+    lost = is_out(ball.x, ball.y, half_length, half_width) or episode.ticks_held >= settings.held_by_keeper
+    # The rules: no touching the ball in their defence area, not even partly inside.
+    lost = lost or in_area(robot.x, robot.y, half_length, depth, width)
+    lost = lost or (held and in_area(robot.x, robot.y, half_length, depth, width, ROBOT_RADIUS))
+    if not held:
+        episode.carried_x = episode.carried_y = nan
+    elif isnan(episode.carried_x):
+        episode.carried_x, episode.carried_y = ball.x, ball.y
+    elif settings.dribbling is not None:
+        way = hypot(ball.x - episode.carried_x, ball.y - episode.carried_y)
+        lost = lost or way > settings.dribbling
+    return lost

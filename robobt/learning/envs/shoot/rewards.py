@@ -13,9 +13,10 @@ from pydantic import Field
 
 from robobt.config.validation import Settings
 from robobt.learning.envs.progress import Progress
-from robobt.learning.envs.task import FloatArray
 from robobt.world.compiled import compilable
+from robobt.world.field import FieldGeometry
 from robobt.world.geometry import wrap_angle
+from robobt.world.records import Ball, Robot
 
 
 class ShootReward(Settings):
@@ -59,10 +60,9 @@ class ShootTerms(Protocol):
 @compilable
 def reward(
     weights: ShootReward,
-    goal_x: float,
-    post_y: float,
-    robot: FloatArray,
-    ball: FloatArray,
+    field: FieldGeometry,
+    robot: Robot,
+    ball: Ball,
     kick: bool,
     goal: bool,
     out: bool,
@@ -73,10 +73,9 @@ def reward(
 
     Args:
         weights: of the terms.
-        goal_x: where the attacked goal's line is [m].
-        post_y: distance of its posts from the field's long axis [m].
-        robot: (6,) x, y, heading, vx, vy, omega after the step.
-        ball: (4,) x, y, vx, vy after it.
+        field: whose goal at +x is attacked.
+        robot: after the step.
+        ball: after it.
         kick: whether there was a kick in it, by what counts as one.
         goal: whether a goal was scored.
         out: whether the episode ended out of play.
@@ -91,12 +90,13 @@ def reward(
         return weights.goal
     if out:
         return 0.0
-    upper = atan2(post_y - robot[1], goal_x - robot[0])
-    lower = atan2(-post_y - robot[1], goal_x - robot[0])
+    goal_x, post_y = field.length / 2, field.goal_width / 2
+    upper = atan2(post_y - robot.y, goal_x - robot.x)
+    lower = atan2(-post_y - robot.y, goal_x - robot.x)
     alpha = wrap_angle(upper - lower)
-    beta = max(abs(wrap_angle(upper - robot[2])), abs(wrap_angle(lower - robot[2])))
+    beta = max(abs(wrap_angle(upper - robot.heading)), abs(wrap_angle(lower - robot.heading)))
     facing = alpha >= beta
-    speed = hypot(ball[2], ball[3])
+    speed = hypot(ball.vx, ball.vy)
     turned = weights.face_goal * (alpha - beta) * speed  # Eq. 12
     terms.face_goal += turned
     terms.time -= weights.time

@@ -4,33 +4,53 @@ from __future__ import annotations
 
 from functools import partial
 from math import hypot
+from typing import Protocol
 
 import numpy as np
 
 from robobt.learning.envs.arena_task import ArenaTask, Policy
 from robobt.learning.envs.bounds import BUMP, farthest, seen_speed, seen_turn
-from robobt.learning.envs.judging import begin_tick, end_tick, goal_of, is_over
+from robobt.learning.envs.judging import (
+    After,
+    Ledger,
+    after,
+    begin_tick,
+    end_tick,
+    goal_of,
+    is_over,
+    parameters,
+)
 from robobt.learning.envs.progress import PROGRESS, Progress
 from robobt.learning.envs.scripted import turn_and_kick
 from robobt.learning.envs.shoot.rewards import ShootReward, ShootTerms, reward
 from robobt.learning.envs.shoot.settings import ShootSettings
 from robobt.learning.envs.shoot.starts import shoot_starts
-from robobt.learning.envs.task import BoolArray, FloatArray
+from robobt.learning.envs.task import Ends, FloatArray
 from robobt.skills.ball.kick_to_target import KickToTarget
 from robobt.skills.base import Skill
-from robobt.world.compiled import compiled, numbers_dtype, numbers_of, record_dtype
+from robobt.world.compiled import compilable, compiled_lean, record_dtype
 from robobt.world.features import SHOOT, ObservationSpec, shoot_rows
 from robobt.world.field import FieldGeometry
+from robobt.world.records import BALL, ROBOT, Ball, Robot
 from robobt.world.rules import in_area, is_out
 from robobt.world.state import ROBOT_RADIUS
-
-_SETTINGS, _FIELD = numbers_dtype(ShootSettings), numbers_dtype(FieldGeometry)
-_WEIGHTS, _TERMS = numbers_dtype(ShootReward), record_dtype(ShootTerms)
 
 _CAREFUL = 0.9
 """Share of what the dribbler can hold that the script turns with."""
 _ROBOT_BACK_LIMIT = -0.2
 """A robot farther back than this ends an episode [m]. Source: the authors' code."""
+
+
+class _Task(Protocol):
+    """What a tick is judged by; ``firing_counts`` tells whether a kick is what the kicker fires."""
+
+    settings: ShootSettings
+    field: FieldGeometry
+    weights: ShootReward
+    firing_counts: float
+
+
+_TASK, _TERMS = record_dtype(_Task), record_dtype(ShootTerms)
 
 
 class ShootTask(ArenaTask):
@@ -45,11 +65,12 @@ class ShootTask(ArenaTask):
 
     def __init__(self, settings: ShootSettings | None = None, n: int = 1, seed: int | None = None) -> None:
         super().__init__(settings, n, seed)
-        field = self.settings.field
+        settings, field, weights = self.settings, self.settings.field, self.settings.reward
         self._goal = field.half_length, field.goal_width / 2
-        self._field = numbers_of(field)
-        self._weights = numbers_of(self.settings.reward)
-        self._firing_counts = self.settings.reward.kick_counts == "fired"
+        firing_counts = weights.kick_counts == "fired"
+        self._judged_by = parameters(
+            _TASK, settings=settings, field=field, weights=weights, firing_counts=firing_counts
+        )
 
     def sample(self, rng: np.random.Generator, count: int) -> FloatArray:
         """See :func:`~robobt.learning.envs.shoot.starts.shoot_starts`."""
@@ -83,60 +104,42 @@ class ShootTask(ArenaTask):
         """See :meth:`ArenaTask.skill`."""
         return KickToTarget(target=self.settings.field.their_goal, kick_speed=self.action.kick_speed)
 
-    def _judge(self, actions: FloatArray, rewards: FloatArray, ends: BoolArray) -> bool:
-        arenas = self.arenas
-        return _judge(
-            self._numbers,
-            self._field,
-            self._weights,
-            self._firing_counts,
-            actions,
-            arenas.robots,
-            arenas.balls,
-            arenas.kicked,
-            self._progress_rows,
-            self._term_rows,
-            rewards,
-            ends,
-        )
+    def _judge(self, actions: FloatArray, rewards: FloatArray, ends: Ends) -> bool:
+        return _judge(self._judged_by, actions, after(self.arenas), self._ledger(rewards, ends))
 
 
-@compiled
-def _judge(
-    settings_: FloatArray,
-    field_: FloatArray,
-    weights_: FloatArray,
-    firing_counts: bool,
-    actions: FloatArray,
-    robots: FloatArray,
-    balls: FloatArray,
-    kicked: BoolArray,
-    progress: FloatArray,
-    terms_: FloatArray,
-    rewards: FloatArray,
-    ends: BoolArray,
-) -> bool:
-    settings: ShootSettings = settings_.view(_SETTINGS)[0]
-    field: FieldGeometry = field_.view(_FIELD)[0]
-    weights: ShootReward = weights_.view(_WEIGHTS)[0]
-    episodes, terms = progress.view(PROGRESS), terms_.view(_TERMS)
-    half_length, half_width, post = field.length / 2, field.width / 2, field.goal_width / 2
+@compiled_lean
+def _judge(task_: FloatArray, actions: FloatArray, after_: After, ledger_: Ledger) -> bool:
+    task: _Task = task_.view(_TASK)[0]
+    arenas, ledger = After(*after_), Ledger(*ledger_)
+    robots, balls = arenas.robots.view(ROBOT)[..., 0], arenas.balls.view(BALL)[..., 0]
+    episodes, terms = ledger.progress.view(PROGRESS)[..., 0], ledger.terms.view(_TERMS)[..., 0]
+    kick_action = actions[:, 1]
     any_ended = False
     for i in range(len(balls)):
-        if is_over(ends, i):
+        if is_over(ledger, i):
             any_ended = True
             continue
-        robot, ball, fired = robots[i, 0], balls[i], kicked[i, 0]
-        episode: Progress = episodes[i, 0]
+        episode: Progress = episodes[i]
+        robot, ball, fired = robots[i, 0], balls[i], arenas.kicked[i, 0]
         begin_tick(episode, fired)
-        goal = goal_of(episode, ball, half_length, half_width, post) > 0
-        out = is_out(ball[0], ball[1], half_length, half_width) or ball[0] < 0.0
-        out = out or robot[0] < _ROBOT_BACK_LIMIT or abs(robot[1]) > half_width
-        out = out or in_area(robot[0], robot[1], half_length, field.defense_depth, field.defense_width)
-        if settings.lost_distance is not None and episode.kick_tick < 0:
-            out = out or hypot(ball[0] - robot[0], ball[1] - robot[1]) > settings.lost_distance
-        kick = fired if firing_counts else actions[i, 1] > 0.0
-        earned = reward(weights, half_length, post, robot, ball, kick, goal, out, episode, terms[i, 0])
-        if end_tick(episode, earned, goal, out, settings.time_limit, i, rewards, ends):
+        goal = goal_of(episode, ball, task.field) > 0
+        out = _left(task, robot, ball, episode)
+        kick = fired if task.firing_counts else kick_action[i] > 0.0
+        earned = reward(task.weights, task.field, robot, ball, kick, goal, out, episode, terms[i])
+        if end_tick(ledger, i, earned, goal, out, task.settings.time_limit):
             any_ended = True
     return any_ended
+
+
+@compilable
+def _left(task: _Task, robot: Robot, ball: Ball, episode: Progress) -> bool:
+    """Return whether robot or ball have left where the task is played."""
+    field, settings = task.field, task.settings
+    half_length, half_width = field.length / 2, field.width / 2
+    out = is_out(ball.x, ball.y, half_length, half_width) or ball.x < 0.0
+    out = out or robot.x < _ROBOT_BACK_LIMIT or abs(robot.y) > half_width
+    out = out or in_area(robot.x, robot.y, half_length, field.defense_depth, field.defense_width)
+    if settings.lost_distance is not None and episode.kick_tick < 0:
+        out = out or hypot(ball.x - robot.x, ball.y - robot.y) > settings.lost_distance
+    return out

@@ -2,216 +2,244 @@
 
 from __future__ import annotations
 
+from enum import IntEnum
 from math import hypot, inf, isnan, nan, sqrt
+from typing import NamedTuple, Protocol
 
-import numpy as np
-from numpy.typing import NDArray
-
-from robobt.learning.envs.judging import begin_tick, end_tick, goal_of, is_over
+from robobt.learning.envs.judging import After, Ledger, begin_tick, end_tick, goal_of, is_over
 from robobt.learning.envs.progress import PROGRESS, Progress
-from robobt.learning.envs.soccer.rewards import SoccerReward, SoccerTerms, own_reward, sent, team_reward
-from robobt.learning.envs.soccer.settings import SoccerRules, SoccerSettings
-from robobt.learning.envs.task import SUCCESS, TRUNCATED, BoolArray, FloatArray
-from robobt.world.compiled import compilable, compiled_lean, numbers_dtype, record_dtype
+from robobt.learning.envs.soccer.rewards import (
+    MEMORY,
+    Memory,
+    SoccerReward,
+    SoccerTerms,
+    own_reward,
+    sent,
+    team_reward,
+)
+from robobt.learning.envs.soccer.settings import AIMS, SoccerRules, SoccerSettings
+from robobt.learning.envs.task import BoolArray, FloatArray, IntArray
+from robobt.sim.records import Records
+from robobt.world.compiled import Index, compilable, compiled_inline, compiled_lean, record_dtype
 from robobt.world.field import FieldGeometry
-from robobt.world.rules import KEPT_GAP, in_area, is_out
-from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS
+from robobt.world.records import BALL, ROBOT, Ball, Robot
+from robobt.world.rules import in_area, is_out, keeps_ball
+from robobt.world.state import ROBOT_RADIUS
 
-LAST, TAKEN_X, TAKEN_Y, LEFT_X, LEFT_Y, BLUE_TICKS, YELLOW_TICKS, GOAL = range(8)
-"""What is kept of an episode: who held the ball last, -1 for nobody; where it came into that mouth and where
-it was last in it [m], TAKEN_X nan where that robot has let go of it; for how many ticks in a row each team
-has held it; the goal, 1 blue's, -1 yellow's."""
-MIND = 8
+_SCORE, _SAVE, _KEEP, _PASS, _HOLD = (AIMS.index(aim) for aim in ("score", "save", "keep", "pass", "hold"))
 
-KEPT = ROBOT_RADIUS + BALL_RADIUS + KEPT_GAP
-"""Whose centre is farther from the ball has let go of it [m]."""
 
-OUT, CARRIED, IN_AREA, TWICE = range(1, 5)
-"""What stops play: a ball out, carried too far, a learner in the others' area, a ball touched twice."""
+class Stop(IntEnum):
+    """What stops play: a ball out, carried too far, a learner in the others' area, a ball touched twice."""
 
-_SCORE, _SAVE, _KEEP, _PASS, _HOLD = range(5)
-_SETTINGS, _FIELD = numbers_dtype(SoccerSettings), numbers_dtype(FieldGeometry)
-TERMS = record_dtype(SoccerTerms)
-"""Names of the reward's terms."""
-_WEIGHTS, _RULES = numbers_dtype(SoccerReward), numbers_dtype(SoccerRules)
+    NOTHING = 0
+    OUT = 1
+    CARRIED = 2
+    IN_AREA = 3
+    TWICE = 4
+
+
+class Judged(Protocol):
+    """What a tick is judged by: ``aim`` is an index in ``AIMS``; the first ``blue`` robots are blue."""
+
+    settings: SoccerSettings
+    field: FieldGeometry
+    weights: SoccerReward
+    rules: SoccerRules
+    aim: Index
+    blue: Index
+
+
+class Mind(Protocol):
+    """What is kept of an episode.
+
+    Attributes:
+        last: who held the ball last, -1 for nobody.
+        taken_x, taken_y: where it came into that mouth [m]; ``taken_x`` is nan where the robot has let go.
+        left_x, left_y: where it was last in it [m].
+        blue_ticks, yellow_ticks: for how many ticks in a row each team has held it.
+        goal: 1 for blue's, -1 for yellow's, 0 for none.
+    """
+
+    last: Index
+    taken_x: float
+    taken_y: float
+    left_x: float
+    left_y: float
+    blue_ticks: float
+    yellow_ticks: float
+    goal: float
+
+
+JUDGED, MIND, TERMS = record_dtype(Judged), record_dtype(Mind), record_dtype(SoccerTerms)
+
+
+class Play(NamedTuple):
+    """What else judging reads and fills in ``n`` arenas with L learners.
+
+    ``fouls`` tells which team broke a rule of restarts, 1 blue, -1 yellow, 0 nobody, and ``stops`` what stops
+    play without ending the episode; where the rules have restarts they tell of any rule afterwards.
+    """
+
+    who: IntArray  # (L,) indices of the learners
+    kept: BoolArray  # (n,) whether the ball rests where it is yellow's goalkeeper's
+    fouls: FloatArray  # (n,)
+    stops: IntArray  # (n,) of Stop
+    minds: FloatArray  # (n, size(MIND))
+    memories: FloatArray  # (n, L, size(MEMORY))
+    shares: FloatArray  # (n, L) rewards of the learners, added to
+
+
+class Tick(NamedTuple):
+    """An arena after a tick."""
+
+    judged: Judged
+    who: IntArray
+    robots: Records[Robot]  # (R,)
+    ball: Ball
+    contact: BoolArray  # (R,)
+    kicked: BoolArray  # (R,)
+    touch: int
+    mind: Mind
+    memories: Records[Memory]  # (L,)
+    terms: SoccerTerms
+
+
+class Course(NamedTuple):
+    """What a tick brought: a goal and a fault, 1 blue's, -1 yellow's, 0 nobody's; who has the ball."""
+
+    goal: int
+    fault: float
+    holder: int  # -1 for nobody
+    passed: bool
 
 
 @compiled_lean
-def judge(
-    settings_: FloatArray,
-    field_: FloatArray,
-    weights_: FloatArray,
-    rules_: FloatArray,
-    aim: int,
-    who: NDArray[np.int64],
-    blue: int,
-    robots: FloatArray,
-    balls: FloatArray,
-    contact: BoolArray,
-    kicked: BoolArray,
-    touch: NDArray[np.int64],
-    kept: BoolArray,
-    fouls: FloatArray,
-    stops: NDArray[np.int64],
-    minds: FloatArray,
-    before: FloatArray,
-    owns: FloatArray,
-    shares: FloatArray,
-    progress: FloatArray,
-    terms_: FloatArray,
-    rewards: FloatArray,
-    ends: BoolArray,
-) -> bool:
+def judge(judged_: FloatArray, after_: After, play_: Play, ledger_: Ledger) -> bool:
     """Judge a tick of all arenas; return whether any episode has ended.
 
     Args:
-        settings_: numbers of the task's settings.
-        field_: of the field.
-        weights_: of the reward.
-        rules_: of the rules.
-        aim: index in ``AIMS``.
-        who: (L,) indices of the learners.
-        blue: how many robots, the first, are blue.
-        robots: (n, R, 6) states.
-        balls: (n, 4) states.
-        contact: (n, R) in whose mouth the ball lies.
-        kicked: (n, R) who kicked.
-        touch: (n,) who touched the ball last, -1 for nobody.
-        kept: (n,) whether the ball rests where it is yellow's goalkeeper's.
-        fouls: (n,) which team broke a rule of restarts, 1 blue, -1 yellow, 0 nobody; where the rules have
-            restarts, any rule afterwards.
-        stops: (n,) what stops play without ending the episode, of
-            :data:`OUT` and so on, 0 for nothing; filled where the rules have restarts.
-        minds: (n, MIND) what is kept of the episodes.
-        before: (n, L, 3) what the rewards keep.
-        owns: (L,) scratch.
-        shares: (n, L) rewards of the learners, added to.
-        progress: (n, ...) rows of ``PROGRESS``.
-        terms_: (n, ...) rows of ``TERMS``, added to.
-        rewards: (n,) added to.
-        ends: (3, n) filled.
+        judged_: numbers of :class:`Judged`.
+        after_: the arenas after the tick.
+        play_: what is kept of them, changed.
+        ledger_: their episodes, changed.
     """
-    settings: SoccerSettings = settings_.view(_SETTINGS)[0]
-    field: FieldGeometry = field_.view(_FIELD)[0]
-    weights: SoccerReward = weights_.view(_WEIGHTS)[0]
-    rules: SoccerRules = rules_.view(_RULES)[0]
-    episodes, terms = progress.view(PROGRESS), terms_.view(TERMS)
-    half_length, half_width, post = field.length / 2, field.width / 2, field.goal_width / 2
-    any_ended, part = False, 1.0 / max(len(who), 1)
+    judged: Judged = judged_.view(JUDGED)[0]
+    arenas, play, ledger = After(*after_), Play(*play_), Ledger(*ledger_)
+    robots, balls = arenas.robots.view(ROBOT)[..., 0], arenas.balls.view(BALL)[..., 0]
+    minds, memories = play.minds.view(MIND)[..., 0], play.memories.view(MEMORY)[..., 0]
+    episodes, terms = ledger.progress.view(PROGRESS)[..., 0], ledger.terms.view(TERMS)[..., 0]
+    rules, any_ended = judged.rules, False
     for i in range(len(balls)):
-        if is_over(ends, i):
+        if is_over(ledger, i):
             any_ended = True
             continue
-        ball, mind = balls[i], minds[i]
-        episode: Progress = episodes[i, 0]
-        fired = False
-        for index in who:
-            fired = fired or kicked[i, index]
-        begin_tick(episode, fired)
-        side = goal_of(episode, ball, half_length, half_width, post)
-        mind[GOAL] = side
-        out = is_out(ball[0], ball[1], half_length, half_width) and side == 0
-        holder, passed, too_far = _possession(rules, robots[i], contact[i], kicked[i], ball, blue, mind)
-        # Who broke a rule: 1 blue, -1 yellow, 0 nobody.
-        fault, stop = fouls[i], stops[i]
-        if out:
-            stop = OUT
-            if touch[i] >= 0:
-                fault = 1.0 if touch[i] < blue else -1.0
-        lost = rules.longest_hold is not None and mind[BLUE_TICKS] > rules.longest_hold
-        if too_far:
-            fault, stop = 1.0 if holder < blue else -1.0, CARRIED
-        if rules.areas:
-            for index in who:
-                sign = 1.0 if index < blue else -1.0
-                x, y = sign * robots[i, index, 0], sign * robots[i, index, 1]
-                if in_area(x, y, half_length, field.defense_depth, field.defense_width):
-                    fault, stop = sign, IN_AREA
-        lost = lost or (aim != _SAVE and (_at_least(mind[YELLOW_TICKS], rules.held_by) or kept[i]))
+        tick = Tick(
+            judged,
+            play.who,
+            robots[i],
+            balls[i],
+            arenas.contact[i],
+            arenas.kicked[i],
+            arenas.touch[i],
+            minds[i],
+            memories[i],
+            terms[i],
+        )
+        episode: Progress = episodes[i]
+        begin_tick(episode, _any_learner_kicked(tick))
+        goal = goal_of(episode, tick.ball, judged.field)
+        tick.mind.goal = goal
+        out = goal == 0 and is_out(tick.ball.x, tick.ball.y, judged.field.length / 2, judged.field.width / 2)
+        holder, passed, too_far = _possession(tick)
+        fault, stop = _fault(tick, out, holder, too_far, play.fouls[i], play.stops[i])
+        lost = _has_lost(tick, play.kept[i])
         if lost:
             fault = 1.0
         # Who ended it by that.
         ended = fault
         if rules.restarts:
             out, ended = False, 1.0 if lost else 0.0
-            fouls[i], stops[i] = fault, 0 if lost or side != 0 else stop
-        failed = out or ended != 0.0 or side < 0
-        success = side > 0
-        if aim == _SAVE:
-            success = side > 0 or out or ended < 0.0 or _at_least(mind[BLUE_TICKS], rules.held_by)
-            failed = side < 0 or ended > 0.0
-        elif aim == _PASS:
-            success = passed and not failed
-            failed = failed or side > 0
-        elif aim == _HOLD:
-            success = mind[BLUE_TICKS] >= rules.hold and not failed
-            failed = failed or side > 0
-        elif aim == _KEEP:
-            success = False
-            failed = failed or side > 0
-        success = success and not (failed and aim != _SCORE)
-        ball_to_goal = hypot(half_length - ball[0], ball[1]), hypot(half_length + ball[0], ball[1])
-        blues = yellows = 0
-        of_blue = of_yellow = 0.0
-        for k in range(len(who)):
-            team = 0 if who[k] < blue else 1
-            sign = 1.0 if team == 0 else -1.0
-            robot = robots[i, who[k]]
-            nearest = inf
-            for r in range(robots.shape[1]):
-                if r != who[k]:
-                    x, y = robots[i, r, 0] - robot[0], robots[i, r, 1] - robot[1]
-                    nearest = min(nearest, x * x + y * y)
-            owns[k] = own_reward(
-                weights,
-                sign * half_length,
-                post,
-                robot,
-                ball,
-                kicked[i, who[k]],
-                sqrt(nearest) - 2.0 * ROBOT_RADIUS,
-                before[i, k],
-                terms[i, 0],
-                part,
-            )
-            if weights.sent > 0.0 and kicked[i, who[k]]:
-                first, last = (0, blue) if team == 0 else (blue, robots.shape[1])
-                aimed = weights.sent * sent(ball, robots[i], first, last, rules.pass_length)
-                terms[i, 0].sent += part * aimed
-                owns[k] += aimed
-            if team == 0:
-                of_blue += owns[k]
-                blues += 1
-            else:
-                of_yellow += owns[k]
-                yellows += 1
-        total = 0.0
-        for k in range(len(who)):
-            team = 0 if who[k] < blue else 1
-            sign = 1.0 if team == 0 else -1.0
-            holds = holder >= 0 and (holder < blue) == (team == 0)
-            earned = team_reward(
-                weights,
-                sign * side,
-                sign * fault,
-                passed and team == 0,
-                holds,
-                ball_to_goal[team],
-                before[i, k],
-                terms[i, 0],
-                part,
-            )
-            mean_own = of_blue / blues if team == 0 else of_yellow / yellows
-            earned += (1.0 - weights.shared) * owns[k] + weights.shared * mean_own
-            shares[i, k] += earned
-            total += earned
-        mean = total / max(len(who), 1)
-        if end_tick(episode, mean, success, failed, settings.time_limit, i, rewards, ends):
+            play.fouls[i], play.stops[i] = fault, Stop.NOTHING if lost or goal != 0 else stop
+        success, failed = _ends(tick, goal, out, ended, passed)
+        mean = _reward(tick, Course(goal, fault, holder, passed), play.shares[i])
+        if end_tick(ledger, i, mean, success, failed, judged.settings.time_limit):
             any_ended = True
             # Who had nothing to do but to hold out has done it.
-            if ends[TRUNCATED, i] and aim in (_SAVE, _KEEP):
-                ends[SUCCESS, i] = True
+            if ledger.truncated[i] and judged.aim in (_SAVE, _KEEP):
+                ledger.success[i] = True
     return any_ended
+
+
+@compiled_inline
+def _any_learner_kicked(tick: Tick) -> bool:
+    fired = False
+    for index in tick.who:
+        fired = fired or tick.kicked[index]
+    return fired
+
+
+@compiled_inline
+def _possession(tick: Tick) -> tuple[int, bool, bool]:
+    """Follow the ball; return who holds it, -1 for nobody, whether it was passed, and carried too far."""
+    blue, rules, ball, mind = tick.judged.blue, tick.judged.rules, tick.ball, tick.mind
+    holder = -1
+    for r in range(len(tick.contact)):
+        if tick.contact[r]:
+            holder = r
+    mind.blue_ticks = mind.blue_ticks + 1.0 if 0 <= holder < blue else 0.0
+    mind.yellow_ticks = mind.yellow_ticks + 1.0 if holder >= blue else 0.0
+    if holder < 0:
+        for r in range(len(tick.kicked)):
+            if tick.kicked[r]:
+                # It had the ball, if for less than a tick.
+                mind.last, mind.left_x, mind.left_y = r, ball.x, ball.y
+                mind.taken_x = nan
+        if mind.last >= 0 and not keeps_ball(tick.robots[mind.last], ball):
+            mind.taken_x = nan
+        return holder, False, False
+    last, passed = mind.last, False
+    if holder != last:
+        way = hypot(ball.x - mind.left_x, ball.y - mind.left_y)
+        passed = 0 <= last < blue and holder < blue and way >= rules.pass_length
+        mind.last = holder
+    if holder != last or isnan(mind.taken_x):
+        mind.taken_x, mind.taken_y = ball.x, ball.y
+    mind.left_x, mind.left_y = ball.x, ball.y
+    carried = hypot(ball.x - mind.taken_x, ball.y - mind.taken_y)
+    return holder, passed, rules.dribbling is not None and carried > rules.dribbling
+
+
+@compiled_inline
+def _fault(tick: Tick, out: bool, holder: int, too_far: bool, fault: float, stop: int) -> tuple[float, int]:
+    """Return who breaks a rule, 1 blue, -1 yellow, 0 nobody, and what stops play.
+
+    ``fault`` and ``stop`` are those of the rules of restarts. Of several the last counts.
+    """
+    blue, field = tick.judged.blue, tick.judged.field
+    if out:
+        stop = Stop.OUT
+        if tick.touch >= 0:
+            fault = 1.0 if tick.touch < blue else -1.0
+    if too_far:
+        fault, stop = 1.0 if holder < blue else -1.0, Stop.CARRIED
+    if tick.judged.rules.areas:
+        for index in tick.who:
+            sign, robot = 1.0 if index < blue else -1.0, tick.robots[index]
+            if in_area(
+                sign * robot.x, sign * robot.y, field.length / 2, field.defense_depth, field.defense_width
+            ):
+                fault, stop = sign, Stop.IN_AREA
+    return fault, stop
+
+
+@compiled_inline
+def _has_lost(tick: Tick, kept: bool) -> bool:
+    """Return whether blue has held the ball for too long, or yellow for long enough."""
+    rules, mind = tick.judged.rules, tick.mind
+    if rules.longest_hold is not None and mind.blue_ticks > rules.longest_hold:
+        return True
+    return tick.judged.aim != _SAVE and (_at_least(mind.yellow_ticks, rules.held_by) or kept)
 
 
 @compilable
@@ -219,40 +247,91 @@ def _at_least(ticks: float, most: int | None) -> bool:
     return most is not None and ticks >= most
 
 
-@compiled_lean
-def _possession(
-    rules: SoccerRules,
-    robots: FloatArray,
-    contact: BoolArray,
-    kicked: BoolArray,
-    ball: FloatArray,
-    blue: int,
-    mind: FloatArray,
-) -> tuple[int, bool, bool]:
-    """Follow the ball; return who holds it, -1 for nobody, whether it was passed, and carried too far."""
-    holder = -1
-    for r in range(len(contact)):
-        if contact[r]:
-            holder = r
-    mind[BLUE_TICKS] = mind[BLUE_TICKS] + 1.0 if 0 <= holder < blue else 0.0
-    mind[YELLOW_TICKS] = mind[YELLOW_TICKS] + 1.0 if holder >= blue else 0.0
-    if holder < 0:
-        for r in range(len(kicked)):
-            if kicked[r]:
-                # It had the ball, if for less than a tick.
-                mind[LAST], mind[LEFT_X], mind[LEFT_Y] = r, ball[0], ball[1]
-                mind[TAKEN_X] = nan
-        had = int(mind[LAST])
-        if had >= 0 and hypot(ball[0] - robots[had, 0], ball[1] - robots[had, 1]) > KEPT:
-            mind[TAKEN_X] = nan
-        return holder, False, False
-    last, passed = int(mind[LAST]), False
-    if holder != last:
-        way = hypot(ball[0] - mind[LEFT_X], ball[1] - mind[LEFT_Y])
-        passed = 0 <= last < blue and holder < blue and way >= rules.pass_length
-        mind[LAST] = holder
-    if holder != last or isnan(mind[TAKEN_X]):
-        mind[TAKEN_X], mind[TAKEN_Y] = ball[0], ball[1]
-    mind[LEFT_X], mind[LEFT_Y] = ball[0], ball[1]
-    carried = hypot(ball[0] - mind[TAKEN_X], ball[1] - mind[TAKEN_Y])
-    return holder, passed, rules.dribbling is not None and carried > rules.dribbling
+@compiled_inline
+def _ends(tick: Tick, goal: int, out: bool, ended: float, passed: bool) -> tuple[bool, bool]:
+    """Return whether the episode ends in success, by what blue aims at, and whether it ends otherwise.
+
+    ``ended`` tells who ended it by a fault: 1 blue, -1 yellow, 0 nobody.
+    """
+    aim, rules, mind = tick.judged.aim, tick.judged.rules, tick.mind
+    if aim == _SAVE:
+        success = goal > 0 or out or ended < 0.0 or _at_least(mind.blue_ticks, rules.held_by)
+        failed = goal < 0 or ended > 0.0
+        return success and not failed, failed
+    failed = out or ended != 0.0 or goal < 0
+    if aim == _SCORE:
+        return goal > 0, failed
+    success = False
+    if aim == _PASS:
+        success = passed and not failed
+    elif aim == _HOLD:
+        success = mind.blue_ticks >= rules.hold and not failed
+    failed = failed or goal > 0
+    return success and not failed, failed
+
+
+@compiled_inline
+def _reward(tick: Tick, course: Course, shares: FloatArray) -> float:
+    """Add to ``shares`` (L,) what each learner earns in a tick; return the mean."""
+    blue, weights, field, ball = tick.judged.blue, tick.judged.weights, tick.judged.field, tick.ball
+    half_length, learners = field.length / 2, len(tick.who)
+    blue_to_goal, yellow_to_goal = hypot(half_length - ball.x, ball.y), hypot(half_length + ball.x, ball.y)
+    blue_own, yellow_own = _own_rewards(tick)
+    total, part = 0.0, 1.0 / max(learners, 1)
+    for k in range(learners):
+        is_blue, memory = tick.who[k] < blue, tick.memories[k]
+        sign = 1.0 if is_blue else -1.0
+        earned = team_reward(
+            weights,
+            sign * course.goal,
+            sign * course.fault,
+            course.passed and is_blue,
+            course.holder >= 0 and (course.holder < blue) == is_blue,
+            blue_to_goal if is_blue else yellow_to_goal,
+            memory,
+            tick.terms,
+            part,
+        )
+        mean_own = blue_own if is_blue else yellow_own
+        earned += (1.0 - weights.shared) * memory.own + weights.shared * mean_own
+        shares[k] += earned
+        total += earned
+    return total / max(learners, 1)
+
+
+@compiled_inline
+def _own_rewards(tick: Tick) -> tuple[float, float]:
+    """Note what each learner's own terms bring in a tick; return their means for blue and for yellow."""
+    judged, ball, robots = tick.judged, tick.ball, tick.robots
+    blue, weights, part = judged.blue, judged.weights, 1.0 / max(len(tick.who), 1)
+    blues = yellows = 0
+    of_blue = of_yellow = 0.0
+    for k in range(len(tick.who)):
+        me, memory = tick.who[k], tick.memories[k]
+        sign, fired = 1.0 if me < blue else -1.0, tick.kicked[me]
+        gap = _nearest(robots, me) - 2.0 * ROBOT_RADIUS
+        own = own_reward(weights, judged.field, sign, robots[me], ball, fired, gap, memory, tick.terms, part)
+        if weights.sent > 0.0 and fired:
+            first, last = (0, blue) if me < blue else (blue, len(robots))
+            aimed = weights.sent * sent(ball, robots, first, last, judged.rules.pass_length)
+            tick.terms.sent += part * aimed
+            own += aimed
+        memory.own = own
+        if me < blue:
+            of_blue += own
+            blues += 1
+        else:
+            of_yellow += own
+            yellows += 1
+    return of_blue / max(blues, 1), of_yellow / max(yellows, 1)
+
+
+@compiled_inline
+def _nearest(robots: Records[Robot], me: int) -> float:
+    """Return how far the centre of the nearest other robot is [m]."""
+    nearest = inf
+    for r in range(len(robots)):
+        if r != me:
+            x, y = robots[r].x - robots[me].x, robots[r].y - robots[me].y
+            nearest = min(nearest, x * x + y * y)
+    return sqrt(nearest)

@@ -2,28 +2,27 @@
 
 from __future__ import annotations
 
-from math import cos, hypot, isnan, sin
+from math import isnan
 
-import numpy as np
-from numpy.typing import NDArray
-
-from robobt.learning.envs.soccer.judge import KEPT, LAST, TAKEN_X, TAKEN_Y
-from robobt.learning.envs.task import FloatArray
+from robobt.learning.envs.soccer.judge import MIND
+from robobt.learning.envs.task import FloatArray, IntArray
 from robobt.sim.records import COMMAND
-from robobt.skills.ball.let_go import FASTER
-from robobt.skills.conditions.carried_far import LETTING_GO
-from robobt.world.compiled import compiled
+from robobt.skills.ball.let_go import push_speed
+from robobt.skills.conditions.carried_far import way_carried
+from robobt.world.compiled import compiled_lean
+from robobt.world.records import BALL, ROBOT
+from robobt.world.rules import keeps_ball
 
 
-@compiled
+@compiled_lean
 def let_go(
     limit: float,
-    who: NDArray[np.int64],
+    who: IntArray,
     blue: int,
-    robots: FloatArray,
-    balls: FloatArray,
-    minds: FloatArray,
-    commands: FloatArray,
+    robots_: FloatArray,
+    balls_: FloatArray,
+    minds_: FloatArray,
+    commands_: FloatArray,
 ) -> None:
     """Let each learner that has carried the ball ``limit`` [m] or farther get off it.
 
@@ -34,25 +33,19 @@ def let_go(
         limit: [m].
         who: (L,) indices of the learners.
         blue: how many robots, the first, attack towards +x.
-        robots: (n, R, 6) states.
-        balls: (n, 4) states.
-        minds: (n, MIND) as of :func:`~robobt.learning.envs.soccer.judge.judge`.
-        commands: (n, R, size(COMMAND)); changed.
+        robots_: (n, R, size(ROBOT)) states.
+        balls_: (n, size(BALL)) states.
+        minds_: (n, size(MIND)) of :class:`~robobt.learning.envs.soccer.judge.Mind`.
+        commands_: (n, R, size(COMMAND)); changed.
     """
+    robots, balls = robots_.view(ROBOT)[..., 0], balls_.view(BALL)[..., 0]
+    minds, commands = minds_.view(MIND)[..., 0], commands_.view(COMMAND)[..., 0]
     for i in range(len(balls)):
         mind, ball = minds[i], balls[i]
         for index in who:
-            if mind[LAST] != index or isnan(mind[TAKEN_X]):
-                continue
             robot = robots[i, index]
-            if hypot(ball[0] - robot[0], ball[1] - robot[1]) > KEPT:
+            if mind.last != index or isnan(mind.taken_x) or not keeps_ball(robot, ball):
                 continue
-            way = hypot(ball[0] - mind[TAKEN_X], ball[1] - mind[TAKEN_Y])
-            if way + LETTING_GO * hypot(ball[2], ball[3]) >= limit:
-                c, s = cos(robot[2]), sin(robot[2])
-                commands[i, index] = 0.0
-                side = 1.0 if index < blue else -1.0
-                if side * ball[0] > 0.0 or side * c > 0.0:
-                    commands.view(COMMAND)[i, index, 0].kick_speed = (
-                        max(0.0, c * ball[2] + s * ball[3]) + FASTER
-                    )
+            if way_carried(ball, mind.taken_x, mind.taken_y) >= limit:
+                commands_[i, index] = 0.0
+                commands[i, index].kick_speed = push_speed(robot, ball, 1.0 if index < blue else -1.0)

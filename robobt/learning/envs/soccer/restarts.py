@@ -11,8 +11,7 @@ from math import atan2, cos, hypot, pi, sin
 import numpy as np
 from numpy.typing import NDArray
 
-from robobt.learning.envs.judging import is_over
-from robobt.learning.envs.soccer.judge import CARRIED, IN_AREA, OUT, TWICE
+from robobt.learning.envs.soccer.judge import Stop
 from robobt.learning.envs.soccer.settings import SoccerSettings
 from robobt.learning.envs.task import BoolArray, FloatArray, IntArray
 from robobt.learning.opponents.restart_players import RESTART, RestartState
@@ -37,9 +36,9 @@ from robobt.world.rules import (
 from robobt.world.state import BALL_RADIUS, ROBOT_HEIGHT, ROBOT_RADIUS
 
 _KINDS = {
-    CARRIED: EventKind.BOT_DRIBBLED_BALL_TOO_FAR,
-    IN_AREA: EventKind.ATTACKER_TOO_CLOSE_TO_DEFENSE_AREA,
-    TWICE: EventKind.ATTACKER_DOUBLE_TOUCHED_BALL,
+    Stop.CARRIED: EventKind.BOT_DRIBBLED_BALL_TOO_FAR,
+    Stop.IN_AREA: EventKind.ATTACKER_TOO_CLOSE_TO_DEFENSE_AREA,
+    Stop.TWICE: EventKind.ATTACKER_DOUBLE_TOUCHED_BALL,
 }
 _AWAY = STOP_DISTANCE + ROBOT_RADIUS
 """From an opponent's centre to the ball of a restart [m]."""
@@ -87,11 +86,16 @@ class Restarts:
         self.rows[which] = 0.0
         self.states["taker"][which] = -1.0
 
-    def watch(self, arenas: Arenas, ends: BoolArray) -> BoolArray:
-        """Look at a tick: fill ``fouls`` and ``stops``; return who was put back, (n, R + 1)."""
+    def watch(self, arenas: Arenas, over: BoolArray) -> BoolArray:
+        """Look at a tick: fill ``fouls`` and ``stops``; return who was put back, (n, R + 1).
+
+        Args:
+            arenas: after it.
+            over: (n,) which episodes ended earlier in this decision.
+        """
         moved = _watch(
             self.rows, self._blue, self._time, self._again, self._double_touch, self._edges, arenas.robots,
-            arenas.balls, arenas.flight, arenas.contact, arenas.touch, ends, self.fouls, self.stops,
+            arenas.balls, arenas.flight, arenas.contact, arenas.touch, over, self.fouls, self.stops,
             self._moved,
         )  # fmt: skip
         if moved:
@@ -124,7 +128,7 @@ class Restarts:
     def _event(self, arena: int, arenas: Arenas, before: Point, carried: Point) -> RefereeEvent:
         kind, touch, fault = int(self.stops[arena]), int(arenas.touch[arena]), self.fouls[arena]
         ball = arenas.balls[arena].tolist()
-        if kind == OUT:
+        if kind == Stop.OUT:
             team = None if touch < 0 else Team.BLUE if touch < self._blue else Team.YELLOW
             at, over_goal_line = exit_point(self._field, before, (ball[0], ball[1]))
             left = EventKind.BALL_LEFT_FIELD_TOUCH_LINE
@@ -132,11 +136,11 @@ class Restarts:
                 left = EventKind.BALL_LEFT_FIELD_GOAL_LINE
             return RefereeEvent(0.0, left, team, None, *at)
         x, y = ball[:2]
-        if kind == TWICE:
+        if kind == Stop.TWICE:
             x, y = float(self.states["spot_x"][arena]), float(self.states["spot_y"][arena])
-        elif kind == CARRIED:
+        elif kind == Stop.CARRIED:
             x, y = carried
-        return RefereeEvent(0.0, _KINDS[kind], Team.BLUE if fault > 0.0 else Team.YELLOW, None, x, y)
+        return RefereeEvent(0.0, _KINDS[Stop(kind)], Team.BLUE if fault > 0.0 else Team.YELLOW, None, x, y)
 
     def tell(self, seen: FloatArray, which: IntArray, who: NDArray[np.int64]) -> None:
         """Fill what the robots ``who`` of the arenas ``which`` are told in observations (m, L * size)."""
@@ -179,7 +183,7 @@ def _watch(
     flight: FloatArray,
     contact: BoolArray,
     touch: NDArray[np.int64],
-    ends: BoolArray,
+    over: BoolArray,
     fouls: FloatArray,
     stops: NDArray[np.int64],
     moved: BoolArray,
@@ -189,7 +193,7 @@ def _watch(
         state: RestartState = rows.view(RESTART)[i, 0]
         ball = balls[i]
         fouls[i], stops[i], moved[i] = 0.0, 0, False
-        if is_over(ends, i):
+        if over[i]:
             continue
         state.pause = max(state.pause - 1.0, 0.0)
         if state.team != 0.0:
@@ -221,7 +225,7 @@ def _watch(
                 and flight.view(FLIGHT)[i, 0].z < ROBOT_HEIGHT
             )
             if hull or contact[i, taker]:
-                fouls[i], stops[i] = 1.0 if taker < blue else -1.0, TWICE
+                fouls[i], stops[i] = 1.0 if taker < blue else -1.0, Stop.TWICE
     return any_moved
 
 

@@ -12,8 +12,10 @@ from typing import Protocol
 from pydantic import Field
 
 from robobt.config.validation import Settings
-from robobt.learning.envs.task import FloatArray
-from robobt.world.compiled import compilable
+from robobt.sim.records import Records
+from robobt.world.compiled import compilable, record_dtype
+from robobt.world.field import FieldGeometry
+from robobt.world.records import Ball, Robot
 from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS
 
 _WITHIN = 0.4
@@ -21,8 +23,6 @@ _WITHIN = 0.4
 _REWARDED = 4
 """So many shots of an episode are rewarded. If all were, shooting at the goalkeeper and fetching the ball
 could pay more than a goal, and in one seed of five did; if the first alone is, learning takes far longer."""
-SHOTS = 2
-"""Index of how many have been, in what is kept for a robot's reward."""
 _BLOCKED = 0.2
 """An opponent nearer than this to its way gets a pass [m]."""
 
@@ -78,6 +78,25 @@ class SoccerTerms(Protocol):
     crash: float
 
 
+class Memory(Protocol):
+    """What is kept of a learner for its reward.
+
+    Attributes:
+        to_goal: distance from the ball to the attacked goal in the tick before, nan at first [m].
+        to_ball: from its hull to the ball in that, nan at first [m].
+        shots: how many it has been rewarded for.
+        own: what its own terms brought in this tick.
+    """
+
+    to_goal: float
+    to_ball: float
+    shots: float
+    own: float
+
+
+MEMORY = record_dtype(Memory)
+
+
 @compilable
 def team_reward(
     weights: SoccerReward,
@@ -86,7 +105,7 @@ def team_reward(
     passed: bool,
     holding: bool,
     ball_to_goal: float,
-    before: FloatArray,
+    memory: Memory,
     terms: SoccerTerms,
     part: float,
 ) -> float:
@@ -99,8 +118,7 @@ def team_reward(
         passed: whether a pass of the team has come to a mate.
         holding: whether the ball lies in a mouth of the team.
         ball_to_goal: distance from the ball to the attacked goal [m].
-        before: (3,) that of the tick before, nan at first, which is replaced, the robot's to the ball, and
-            how often it has shot.
+        memory: of the robot, brought up to date.
         terms: of the episode, added to.
         part: of one learner in the mean of all.
     """
@@ -115,24 +133,24 @@ def team_reward(
     if holding:
         terms.holding += part * weights.holding
         total += weights.holding
-    if not isnan(before[0]):
-        nearer = weights.advance * (before[0] - ball_to_goal)
+    if not isnan(memory.to_goal):
+        nearer = weights.advance * (memory.to_goal - ball_to_goal)
         terms.advance += part * nearer
         total += nearer
-    before[0] = ball_to_goal
+    memory.to_goal = ball_to_goal
     return total
 
 
 @compilable
 def own_reward(
     weights: SoccerReward,
-    goal_x: float,
-    post_y: float,
-    robot: FloatArray,
-    ball: FloatArray,
+    field: FieldGeometry,
+    side: float,
+    robot: Robot,
+    ball: Ball,
     fired: bool,
     gap: float,
-    before: FloatArray,
+    memory: Memory,
     terms: SoccerTerms,
     part: float,
 ) -> float:
@@ -140,30 +158,29 @@ def own_reward(
 
     Args:
         weights: of the terms.
-        goal_x: where the attacked goal's line is, which may be negative [m].
-        post_y: distance of its posts from the field's long axis [m].
-        robot: (6,) x, y, heading, vx, vy, omega after the tick.
-        ball: (4,) x, y, vx, vy after it.
+        field: on which they play.
+        side: 1 where its team attacks the goal at +x, -1 where that at -x.
+        robot: after the tick.
+        ball: after it.
         fired: whether its kicker fired in it.
         gap: from its hull to the nearest one [m].
-        before: as for :func:`team_reward`; the second entry is replaced, the third counts shots.
+        memory: as for :func:`team_reward`.
         terms: of the episode, added to.
         part: of one learner in the mean of all.
     """
-    total = 0.0
-    far = max(hypot(ball[0] - robot[0], ball[1] - robot[1]) - ROBOT_RADIUS - BALL_RADIUS, 0.0)
-    if not isnan(before[1]):
-        nearer = weights.approach * (before[1] - far)
+    total, goal_x, post_y = 0.0, side * (field.length / 2), field.goal_width / 2
+    far = max(hypot(ball.x - robot.x, ball.y - robot.y) - ROBOT_RADIUS - BALL_RADIUS, 0.0)
+    if not isnan(memory.to_ball):
+        nearer = weights.approach * (memory.to_ball - far)
         terms.approach += part * nearer
         total += nearer
-    before[1] = far
-    shots = 0.0 if isnan(before[SHOTS]) else before[SHOTS]
-    if fired and shots < _REWARDED and (goal_x - ball[0]) * ball[2] > 0.0:
-        crosses = ball[1] + (goal_x - ball[0]) * ball[3] / ball[2]
+    memory.to_ball = far
+    if fired and memory.shots < _REWARDED and (goal_x - ball.x) * ball.vx > 0.0:
+        crosses = ball.y + (goal_x - ball.x) * ball.vy / ball.vx
         if abs(crosses) < post_y - BALL_RADIUS:
             terms.shot += part * weights.shot
             total += weights.shot
-            before[SHOTS] = shots + 1.0
+            memory.shots += 1.0
     if gap < 0.005:
         terms.crash -= part * weights.crash
         total -= weights.crash
@@ -171,17 +188,17 @@ def own_reward(
 
 
 @compilable
-def sent(ball: FloatArray, robots: FloatArray, first: int, last: int, least: float) -> float:
+def sent(ball: Ball, robots: Records[Robot], first: int, last: int, least: float) -> float:
     """Return how well a kick is aimed at a mate: 1 at its centre, 0 beside it or with an opponent on the way.
 
     Args:
-        ball: (4,) x, y, vx, vy as it has left.
-        robots: (R, 6) states, the team's being ``first`` to ``last``, who kicked included.
+        ball: as it has left.
+        robots: all of them, the team's being ``first`` to ``last``, who kicked included.
         first: index of the team's first robot.
         last: behind its last.
         least: how far away a mate must be [m].
     """
-    fast = hypot(ball[2], ball[3])
+    fast = hypot(ball.vx, ball.vy)
     if fast == 0.0:
         return 0.0
     best, until = 0.0, 0.0
@@ -197,7 +214,7 @@ def sent(ball: FloatArray, robots: FloatArray, first: int, last: int, least: flo
 
 
 @compilable
-def _off(ball: FloatArray, robot: FloatArray, fast: float) -> tuple[float, float]:
+def _off(ball: Ball, robot: Robot, fast: float) -> tuple[float, float]:
     """Return how far along the ball's way a robot is, and how far beside it [m]."""
-    dx, dy = robot[0] - ball[0], robot[1] - ball[1]
-    return (dx * ball[2] + dy * ball[3]) / fast, abs(dy * ball[2] - dx * ball[3]) / fast
+    dx, dy = robot.x - ball.x, robot.y - ball.y
+    return (dx * ball.vx + dy * ball.vy) / fast, abs(dy * ball.vx - dx * ball.vy) / fast

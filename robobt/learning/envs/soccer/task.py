@@ -2,36 +2,27 @@
 
 from __future__ import annotations
 
-from typing import ClassVar
+from typing import ClassVar, cast
 
 import numpy as np
 
 from robobt.learning.envs.arena_task import ArenaTask
 from robobt.learning.envs.central import central_view
-from robobt.learning.envs.soccer.judge import (
-    BLUE_TICKS,
-    GOAL,
-    LAST,
-    MIND,
-    TAKEN_X,
-    TAKEN_Y,
-    TERMS,
-    YELLOW_TICKS,
-    judge,
-)
+from robobt.learning.envs.judging import after, parameters
+from robobt.learning.envs.soccer.judge import JUDGED, MIND, TERMS, Play, judge
 from robobt.learning.envs.soccer.letting_go import let_go
 from robobt.learning.envs.soccer.restarts import Restarts
-from robobt.learning.envs.soccer.rewards import SHOTS
+from robobt.learning.envs.soccer.rewards import MEMORY
 from robobt.learning.envs.soccer.settings import AIMS, GOALKEEPER, PLAY, SoccerSettings
 from robobt.learning.envs.soccer.starts import columns_of, soccer_starts
-from robobt.learning.envs.task import TERMINATED, TRUNCATED, BoolArray, FloatArray, IntArray, StepResult
+from robobt.learning.envs.task import Ends, FloatArray, IntArray, StepResult
 from robobt.learning.opponents.challengers import Challengers
 from robobt.learning.opponents.field_players import FieldPlayers
 from robobt.learning.opponents.keepers import TRAITS
 from robobt.learning.opponents.plays import PlayedRobots
 from robobt.learning.opponents.restart_players import RestartPlayers
 from robobt.learning.opponents.team_keeper import TeamKeeper
-from robobt.world.compiled import numbers_of
+from robobt.sim.records import RecordArray, size
 from robobt.world.game import GameState
 from robobt.world.team_view import AWAY, team_view, team_view_rows
 
@@ -59,12 +50,16 @@ class SoccerTask(ArenaTask):
         self._who = np.array(settings.learners, dtype=np.int64)
         self.blue = len(settings.blue)
         self._goal = field.half_length, field.goal_width / 2
-        self._field = numbers_of(field)
-        self._weights = numbers_of(settings.reward)
-        self._rules = numbers_of(settings.rules)
-        self._aim = AIMS.index(settings.aim)
+        self._judged_by = parameters(
+            JUDGED,
+            settings=settings,
+            field=field,
+            weights=settings.reward,
+            rules=settings.rules,
+            aim=AIMS.index(settings.aim),
+            blue=self.blue,
+        )
         self._shares = np.zeros((n, len(self.learners)))
-        self._owns = np.zeros(len(self.learners))
 
     def sample(self, rng: np.random.Generator, count: int) -> FloatArray:
         """See :func:`~robobt.learning.envs.soccer.starts.soccer_starts`."""
@@ -122,7 +117,13 @@ class SoccerTask(ArenaTask):
     @property
     def goals(self) -> FloatArray:
         """Who has scored in each arena, (n,): 1 blue, -1 yellow, 0 nobody; until the next episode starts."""
-        return self._minds[:, GOAL]
+        goals: FloatArray = self._states["goal"]
+        return goals
+
+    @property
+    def _states(self) -> RecordArray:
+        """What is kept of the episodes, (n,) of :class:`~robobt.learning.envs.soccer.judge.Mind`."""
+        return self._minds.view(MIND)[:, 0]
 
     def advance(self, actions: FloatArray) -> StepResult:
         """See :meth:`ArenaTask.advance`."""
@@ -155,15 +156,16 @@ class SoccerTask(ArenaTask):
         self._at_restarts = RestartPlayers(
             settings.field, limits, settings.roles, self.blue, settings.player_speed
         )
-        self._minds = np.zeros((n, MIND))
-        self._before = np.zeros((n, len(self.learners), 3))
+        self._minds = np.zeros((n, size(MIND)))
+        self._memories = np.zeros((n, len(self.learners), size(MEMORY)))
         super()._build()
 
     def begin(self, starts: FloatArray, which: IntArray) -> None:
         """See :meth:`ArenaTask.begin`."""
         self._minds[which] = 0.0
-        self._minds[which, LAST] = -1.0
-        self._before[which] = np.nan
+        self._states["last"][which] = -1
+        self._memories[which] = 0.0
+        self._forget(which)
         self._restarts.begin(which)
         traits = starts[:, 6 * self.robots + 4 :]
         for k, keeper in enumerate(self._keepers):
@@ -187,43 +189,20 @@ class SoccerTask(ArenaTask):
             commands[:, self.learners] = self._filled.reshape(self.n, len(self.learners), -1)
             let_go(limit, self._who, self.blue, arenas.robots, arenas.balls, self._minds, commands)
 
-    def _judge(self, actions: FloatArray, rewards: FloatArray, ends: BoolArray) -> bool:  # noqa: ARG002
-        arenas = self.arenas
+    def _judge(self, actions: FloatArray, rewards: FloatArray, ends: Ends) -> bool:  # noqa: ARG002
+        arenas, restarts, progress = self.arenas, self._restarts, self._progress
+        on = self.settings.rules.restarts
         kept = np.zeros(self.n, dtype=np.bool_)
         for keeper in self._keepers:
             if keeper.index >= self.blue:
                 kept |= keeper.kept
-        restarts, on, progress = self._restarts, self.settings.rules.restarts, self._progress
         if on:
-            put = restarts.watch(arenas, ends)
+            put = restarts.watch(arenas, ends.over)
             before = np.column_stack((progress["ball_x"], progress["ball_y"]))
-        ended = judge(
-            self._numbers,
-            self._field,
-            self._weights,
-            self._rules,
-            self._aim,
-            self._who,
-            self.blue,
-            arenas.robots,
-            arenas.balls,
-            arenas.contact,
-            arenas.kicked,
-            arenas.touch,
-            kept,
-            restarts.fouls,
-            restarts.stops,
-            self._minds,
-            self._before,
-            self._owns,
-            self._shares,
-            self._progress_rows,
-            self._term_rows,
-            rewards,
-            ends,
-        )
+        play = (self._who, kept, restarts.fouls, restarts.stops, self._minds, self._memories, self._shares)
+        ended = judge(self._judged_by, after(arenas), cast(Play, play), self._ledger(rewards, ends))
         if on:
-            self._go_on(np.flatnonzero(restarts.stops * ~(ends[TERMINATED] | ends[TRUNCATED])), before)
+            self._go_on(np.flatnonzero(restarts.stops * ~ends.over), before)
             self._perception.put(arenas.robots, arenas.balls, put)
         return ended
 
@@ -231,14 +210,20 @@ class SoccerTask(ArenaTask):
         """Let play go on with a restart where it has been stopped; balls were at ``before`` (n, 2) [m]."""
         if len(which) == 0:
             return
-        states, minds = self._restarts.states, self._minds
-        self._restarts.place(self.arenas, which, before[which], minds[which, TAKEN_X : TAKEN_Y + 1])
+        restarts, minds = self._restarts.states, self._states
+        carried = np.column_stack((minds["taken_x"], minds["taken_y"]))
+        self._restarts.place(self.arenas, which, before[which], carried[which])
         # Nobody has had this ball yet, and nobody has brought it nearer to a goal.
-        minds[which, LAST] = -1.0
-        minds[which, BLUE_TICKS : YELLOW_TICKS + 1] = 0.0
-        self._before[which, :, :SHOTS] = np.nan
+        minds["last"][which] = -1
+        minds["blue_ticks"][which] = minds["yellow_ticks"][which] = 0.0
+        self._forget(which)
         for axis in "xy":
-            self._progress[f"ball_{axis}"][which] = states[f"spot_{axis}"][which]
+            self._progress[f"ball_{axis}"][which] = restarts[f"spot_{axis}"][which]
+
+    def _forget(self, which: IntArray) -> None:
+        """Forget how far away from goals and learners the balls of these arenas were."""
+        memories = self._memories.view(MEMORY)[..., 0]
+        memories["to_goal"][which] = memories["to_ball"][which] = np.nan
 
     def _announce(self, seen: FloatArray, which: IntArray) -> None:
         if self.settings.rules.restarts and self.learners:
