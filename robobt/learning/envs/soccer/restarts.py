@@ -7,10 +7,12 @@ places and distances are those of the match's own referee.
 from __future__ import annotations
 
 from math import atan2, cos, hypot, pi, sin
+from typing import NamedTuple, Protocol, cast
 
 import numpy as np
 from numpy.typing import NDArray
 
+from robobt.learning.envs.judging import After, after, parameters
 from robobt.learning.envs.soccer.judge import Stop
 from robobt.learning.envs.soccer.settings import SoccerSettings
 from robobt.learning.envs.task import BoolArray, FloatArray, IntArray
@@ -20,11 +22,13 @@ from robobt.match.referee.rules.base import AGAIN
 from robobt.match.referee.rules.restart_distances import POINT_TOLERANCE
 from robobt.match.referee.verdicts import resumption_after
 from robobt.sim.arenas import Arenas
-from robobt.sim.records import FLIGHT, RecordArray, size
-from robobt.world.compiled import compilable, compiled
+from robobt.sim.records import FLIGHT, Flight, RecordArray, Records, size
+from robobt.world.compiled import Index, compilable, compiled_inline, compiled_lean, record_dtype
 from robobt.world.division import division_of
+from robobt.world.field import FieldGeometry
 from robobt.world.game import OPEN_PLAY, GameState, RefereeCommand, Restart, Team
 from robobt.world.geometry import Point
+from robobt.world.records import BALL, ROBOT, Ball, Robot
 from robobt.world.rules import (
     AREA_DISTANCE,
     IN_PLAY_DISTANCE,
@@ -50,6 +54,32 @@ _TURNS, _REACHES = 24, 8
 """How many ways round the ball, and how much farther off, a place is looked for."""
 
 
+class _Rules(Protocol):
+    """What restarts go by.
+
+    ``time`` is for how many ticks a team may wait, ``again`` after how many an opponent too near is a new
+    fault, ``double_touch`` whether touching the ball twice is one; the first ``blue`` robots are blue.
+    """
+
+    field: FieldGeometry
+    blue: Index
+    time: float
+    again: float
+    double_touch: float
+
+
+_RULES = record_dtype(_Rules)
+
+
+class _Found(NamedTuple):
+    """What is kept of ``n`` arenas with R robots, and what is found out about a tick."""
+
+    states: FloatArray  # (n, size(RESTART))
+    fouls: FloatArray  # (n,)
+    stops: IntArray  # (n,)
+    moved: BoolArray  # (n, R + 1)
+
+
 class Restarts:
     """The restarts of ``n`` arenas.
 
@@ -66,10 +96,14 @@ class Restarts:
         field, robots = settings.field, len(settings.roles)
         self._field, self._blue, self._period = field, len(settings.blue), settings.period
         self._time = round(division_of(field).kick_time / settings.period)
-        self._again = round(AGAIN / settings.period)
         self._double_touch = settings.rules.double_touch
-        self._edges = np.array(
-            [field.half_length, field.half_width, field.defense_depth, field.defense_width]
+        self._rules = parameters(
+            _RULES,
+            field=field,
+            blue=self._blue,
+            time=self._time,
+            again=round(AGAIN / settings.period),
+            double_touch=self._double_touch,
         )
         self.rows = np.zeros((n, size(RESTART)))
         self.fouls = np.zeros(n)
@@ -93,11 +127,8 @@ class Restarts:
             arenas: after it.
             over: (n,) which episodes ended earlier in this decision.
         """
-        moved = _watch(
-            self.rows, self._blue, self._time, self._again, self._double_touch, self._edges, arenas.robots,
-            arenas.balls, arenas.flight, arenas.contact, arenas.touch, over, self.fouls, self.stops,
-            self._moved,
-        )  # fmt: skip
+        found = cast(_Found, (self.rows, self.fouls, self.stops, self._moved))
+        moved = _watch(self._rules, after(arenas), arenas.flight, over, found)
         if moved:
             which, who = np.nonzero(self._moved[:, :-1])
             arenas.place_robot(which, who, arenas.robots[which, who])
@@ -112,35 +143,34 @@ class Restarts:
             before: (m, 2) where their balls were a tick ago [m].
             carried: (m, 2) where their balls came into the mouth in which they are [m].
         """
-        robots, balls = arenas.robots[which], np.zeros((len(which), 4))
+        robots, balls = arenas.robots[which], np.zeros((len(which), size(BALL)))
         for k, arena in enumerate(which.tolist()):
             event = self._event(arena, arenas, tuple(before[k].tolist()), tuple(carried[k].tolist()))
-            ball = arenas.balls[arena, :2].tolist()
-            following = resumption_after(self._field, event, (ball[0], ball[1]))
+            x, y, _, _ = arenas.balls[arena].tolist()
+            following = resumption_after(self._field, event, (x, y))
             assert following is not None
             sign = 0.0 if following.team is None else 1.0 if following.team is Team.BLUE else -1.0
             self.states[arena] = sign, *following.spot, -1.0, self._time, 0.0, sign
-            balls[k, :2] = following.spot
-            _clear(robots[k], self._blue, sign, *following.spot, self._edges)
+            balls[k] = *following.spot, 0.0, 0.0
+            _clear(self._rules, robots[k], sign, *following.spot)
         arenas.place(robots[..., :3], balls, which)
         self._moved[which] = True
 
     def _event(self, arena: int, arenas: Arenas, before: Point, carried: Point) -> RefereeEvent:
-        kind, touch, fault = int(self.stops[arena]), int(arenas.touch[arena]), self.fouls[arena]
-        ball = arenas.balls[arena].tolist()
+        kind, touch, fault = Stop(self.stops[arena]), int(arenas.touch[arena]), self.fouls[arena]
+        x, y, _, _ = arenas.balls[arena].tolist()
         if kind == Stop.OUT:
             team = None if touch < 0 else Team.BLUE if touch < self._blue else Team.YELLOW
-            at, over_goal_line = exit_point(self._field, before, (ball[0], ball[1]))
+            at, over_goal_line = exit_point(self._field, before, (x, y))
             left = EventKind.BALL_LEFT_FIELD_TOUCH_LINE
             if over_goal_line:
                 left = EventKind.BALL_LEFT_FIELD_GOAL_LINE
             return RefereeEvent(0.0, left, team, None, *at)
-        x, y = ball[:2]
         if kind == Stop.TWICE:
             x, y = float(self.states["spot_x"][arena]), float(self.states["spot_y"][arena])
         elif kind == Stop.CARRIED:
             x, y = carried
-        return RefereeEvent(0.0, _KINDS[Stop(kind)], Team.BLUE if fault > 0.0 else Team.YELLOW, None, x, y)
+        return RefereeEvent(0.0, _KINDS[kind], Team.BLUE if fault > 0.0 else Team.YELLOW, None, x, y)
 
     def tell(self, seen: FloatArray, which: IntArray, who: NDArray[np.int64]) -> None:
         """Fill what the robots ``who`` of the arenas ``which`` are told in observations (m, L * size)."""
@@ -170,85 +200,86 @@ class Restarts:
         )
 
 
-@compiled
-def _watch(
-    rows: FloatArray,
-    blue: int,
-    time: int,
-    again: int,
-    double_touch: bool,
-    edges: FloatArray,
-    robots: FloatArray,
-    balls: FloatArray,
-    flight: FloatArray,
-    contact: BoolArray,
-    touch: NDArray[np.int64],
-    over: BoolArray,
-    fouls: FloatArray,
-    stops: NDArray[np.int64],
-    moved: BoolArray,
-) -> bool:
+@compiled_lean
+def _watch(rules_: FloatArray, after_: After, flight_: FloatArray, over: BoolArray, found_: _Found) -> bool:
+    """See :meth:`Restarts.watch`; return whether anybody has been put back."""
+    rules: _Rules = rules_.view(_RULES)[0]
+    arenas, found = After(*after_), _Found(*found_)
+    robots, balls = arenas.robots.view(ROBOT)[..., 0], arenas.balls.view(BALL)[..., 0]
+    states, flights = found.states.view(RESTART)[..., 0], flight_.view(FLIGHT)[..., 0]
     any_moved = False
-    for i in range(len(rows)):
-        state: RestartState = rows.view(RESTART)[i, 0]
-        ball = balls[i]
-        fouls[i], stops[i], moved[i] = 0.0, 0, False
+    for i in range(len(balls)):
+        found.fouls[i], found.stops[i], found.moved[i, :] = 0.0, Stop.NOTHING, False
         if over[i]:
             continue
+        state: RestartState = states[i]
+        ball, touch = balls[i], arenas.touch[i]
         state.pause = max(state.pause - 1.0, 0.0)
         if state.team != 0.0:
             state.left -= 1.0
-            taken = hypot(ball[0] - state.spot_x, ball[1] - state.spot_y) > IN_PLAY_DISTANCE
+            taken = hypot(ball.x - state.spot_x, ball.y - state.spot_y) > IN_PLAY_DISTANCE
             if taken or state.left <= 0.0:
-                own = touch[i] >= 0 and (touch[i] < blue) == (state.team > 0.0)
-                state.taker = touch[i] if double_touch and taken and own else -1.0
+                own = touch >= 0 and (touch < rules.blue) == (state.team > 0.0)
+                state.taker = touch if rules.double_touch and taken and own else -1.0
                 state.team = 0.0
-            else:
-                first, last = (blue, robots.shape[1]) if state.team > 0.0 else (0, blue)
-                for r in range(first, last):
-                    away = hypot(robots[i, r, 0] - state.spot_x, robots[i, r, 1] - state.spot_y)
-                    if away >= _AWAY - POINT_TOLERANCE:
-                        continue
+                continue
+            first, last = (rules.blue, robots.shape[1]) if state.team > 0.0 else (0, rules.blue)
+            for r in range(first, last):
+                if _put_back(rules, state, robots[i], r):
+                    found.moved[i, r] = any_moved = True
                     if state.pause == 0.0:
-                        fouls[i], state.pause, state.left = -state.team, again, time
-                    _put_off(robots[i], r, state.spot_x, state.spot_y, _AWAY, edges)
-                    robots[i, r, 3:] = 0.0
-                    moved[i, r] = any_moved = True
+                        found.fouls[i], state.pause, state.left = -state.team, rules.again, rules.time
         elif state.taker >= 0.0:
             taker = int(state.taker)
-            if touch[i] != taker:
+            if touch != taker:
                 state.taker = -1.0
-                continue
-            me = robots[i, taker]
-            hull = (
-                against_hull(ball[0] - me[0], ball[1] - me[1], me[2])
-                and flight.view(FLIGHT)[i, 0].z < ROBOT_HEIGHT
-            )
-            if hull or contact[i, taker]:
-                fouls[i], stops[i] = 1.0 if taker < blue else -1.0, Stop.TWICE
+            elif arenas.contact[i, taker] or _pushes(robots[i, taker], ball, flights[i]):
+                found.fouls[i], found.stops[i] = 1.0 if taker < rules.blue else -1.0, Stop.TWICE
     return any_moved
 
 
-@compiled
-def _clear(robots: FloatArray, blue: int, team: float, x: float, y: float, edges: FloatArray) -> None:
-    """Put robots (R, 6) out of the others' areas, and off a ball at (x, y) that is ``team``'s to play."""
-    front = edges[0] - edges[2] - AREA_DISTANCE - ROBOT_RADIUS
+@compiled_inline
+def _put_back(rules: _Rules, state: RestartState, robots: Records[Robot], me: int) -> bool:
+    """Put a robot back, at rest, that is too near to the others' restart; return whether it was."""
+    robot = robots[me]
+    away = hypot(robot.x - state.spot_x, robot.y - state.spot_y)
+    if away >= _AWAY - POINT_TOLERANCE:
+        return False
+    _put_off(rules.field, robots, me, state.spot_x, state.spot_y, _AWAY)
+    robot.vx = robot.vy = robot.omega = 0.0
+    return True
+
+
+@compilable
+def _pushes(robot: Robot, ball: Ball, flight: Flight) -> bool:
+    """Return whether the ball lies against the robot's hull."""
+    return against_hull(ball.x - robot.x, ball.y - robot.y, robot.heading) and flight.z < ROBOT_HEIGHT
+
+
+@compiled_lean
+def _clear(rules_: FloatArray, robots_: FloatArray, team: float, x: float, y: float) -> None:
+    """Put robots (R, size(ROBOT)) out of the others' areas, and off a ball at (x, y) that is ``team``'s."""
+    rules: _Rules = rules_.view(_RULES)[0]
+    robots, field = robots_.view(ROBOT)[..., 0], rules.field
+    half_length, depth = field.length / 2, field.defense_depth
+    front = half_length - depth - AREA_DISTANCE - ROBOT_RADIUS
     for r in range(len(robots)):
-        sign = 1.0 if r < blue else -1.0
-        if in_area(sign * robots[r, 0], sign * robots[r, 1], edges[0], edges[2], edges[3]):
-            robots[r, 0] = sign * front
-            _put_off(robots, r, robots[r, 0], robots[r, 1], 0.0, edges)
+        sign, robot = 1.0 if r < rules.blue else -1.0, robots[r]
+        if in_area(sign * robot.x, sign * robot.y, half_length, depth, field.defense_width):
+            robot.x = sign * front
+            _put_off(field, robots, r, robot.x, robot.y, 0.0)
     for r in range(len(robots)):
-        theirs = team != 0.0 and (r < blue) != (team > 0.0)
+        theirs = team != 0.0 and (r < rules.blue) != (team > 0.0)
         keep = _AWAY if theirs else _CLEAR
-        if hypot(robots[r, 0] - x, robots[r, 1] - y) < keep:
-            _put_off(robots, r, x, y, keep, edges)
+        if hypot(robots[r].x - x, robots[r].y - y) < keep:
+            _put_off(field, robots, r, x, y, keep)
 
 
-@compiled
-def _put_off(robots: FloatArray, me: int, x: float, y: float, reach: float, edges: FloatArray) -> None:
+@compiled_lean
+def _put_off(field: FieldGeometry, robots: Records[Robot], me: int, x: float, y: float, reach: float) -> None:
     """Put a robot ``reach`` from (x, y), straight away or else as near to that as it can stand."""
-    straight = atan2(robots[me, 1] - y, robots[me, 0] - x)
+    half_length, half_width, robot = field.length / 2, field.width / 2, robots[me]
+    straight = atan2(robot.y - y, robot.x - x)
     for step in range(_REACHES):
         far = reach + step * _BESIDE
         for turn in range(_TURNS):
@@ -256,14 +287,14 @@ def _put_off(robots: FloatArray, me: int, x: float, y: float, reach: float, edge
             angle = straight + side * ((turn + 1) // 2) * 2.0 * pi / _TURNS
             # No nearer by a rounding error than it has to be.
             to_x, to_y = x + (far + 1e-6) * cos(angle), y + (far + 1e-6) * sin(angle)
-            if abs(to_x) <= edges[0] and abs(to_y) <= edges[1] and _is_free(robots, me, to_x, to_y):
-                robots[me, 0], robots[me, 1] = to_x, to_y
+            if abs(to_x) <= half_length and abs(to_y) <= half_width and _is_free(robots, me, to_x, to_y):
+                robot.x, robot.y = to_x, to_y
                 return
 
 
-@compilable
-def _is_free(robots: FloatArray, me: int, x: float, y: float) -> bool:
+@compiled_inline
+def _is_free(robots: Records[Robot], me: int, x: float, y: float) -> bool:
     for r in range(len(robots)):
-        if r != me and hypot(robots[r, 0] - x, robots[r, 1] - y) < _BESIDE:
+        if r != me and hypot(robots[r].x - x, robots[r].y - y) < _BESIDE:
             return False
     return True
