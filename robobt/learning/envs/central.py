@@ -3,34 +3,53 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Protocol
 
 import numpy as np
 
 from robobt.learning.envs.task import FloatArray
+from robobt.sim.records import size
+from robobt.world.compiled import record_dtype
+from robobt.world.records import ROBOT
 from robobt.world.team_view import AWAY
 
-EACH, BALL = 7, 4
-"""Entries of a robot: x, y, the heading's cosine and sine, vx, vy, omega; and of the ball: x, y, vx, vy."""
+
+class Turned(Protocol):
+    """A robot with the cosine and sine of its heading instead of that."""
+
+    x: float
+    y: float
+    cos: float
+    sin: float
+    vx: float
+    vy: float
+    omega: float
+
+
+TURNED = record_dtype(Turned)
 
 
 def states_of(robots: FloatArray) -> FloatArray:
-    """Return robots (n, R, 6) as (n, R, EACH)."""
-    turned = np.cos(robots[..., 2:3]), np.sin(robots[..., 2:3])
-    return np.concatenate((robots[..., :2], *turned, robots[..., 3:]), axis=-1)
+    """Return robots (n, R, size(ROBOT)) as (n, R, size(TURNED))."""
+    seen = robots.view(ROBOT)
+    turned = np.cos(seen["heading"]), np.sin(seen["heading"])
+    return np.concatenate((seen["x"], seen["y"], *turned, seen["vx"], seen["vy"], seen["omega"]), axis=-1)
 
 
 def central_view(
     robots: FloatArray, balls: FloatArray, who: Sequence[int], blue: int, own: int, others: int
 ) -> FloatArray:
-    """Compute what the critic sees of the robots ``who``, (n, len(who), EACH * (own + others) + BALL).
+    """Compute what the critic sees of the robots ``who``, (n, len(who), entries).
+
+    The entries are those of :class:`Turned` for ``own + others`` robots, and the ball's.
 
     Both teams see the field as if they attacked towards +x, their own robots first: one critic serves both.
     Within a team robots stand in their order, so that it is known which is which; a place without a robot
     shows one at rest behind the field.
 
     Args:
-        robots: (n, R, 6) x, y, heading, vx, vy, omega in field coordinates.
-        balls: (n, 4) x, y, vx, vy.
+        robots: (n, R, size(ROBOT)) in field coordinates.
+        balls: (n, size(BALL)).
         who: indices of robots.
         blue: how many robots, the first, attack towards +x; the others towards -x.
         own: places for the robot's team.
@@ -38,7 +57,7 @@ def central_view(
     """
     states = states_of(robots)
     # Half a turn changes every sign but that of omega.
-    turn = np.array([-1.0] * (EACH - 1) + [1.0])
+    turn = np.array([1.0 if name == "omega" else -1.0 for name in TURNED.names or ()])
     first, last = states[:, :blue], states[:, blue:]
     seen: dict[bool, FloatArray] = {}
     for is_blue in {index < blue for index in who}:
@@ -51,8 +70,8 @@ def central_view(
 
 def _team_first(team: FloatArray, rest: FloatArray, balls: FloatArray, own: int, others: int) -> FloatArray:
     n = len(balls)
-    places = np.zeros((n, own + others, EACH))
-    places[..., 0] = -AWAY
+    places = np.zeros((n, own + others, size(TURNED)))
+    places.view(TURNED)["x"] = -AWAY
     places[:, : team.shape[1]] = team
     places[:, own : own + rest.shape[1]] = rest
     return np.concatenate((places.reshape(n, -1), balls), axis=1)

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from robobt.learning.envs.task import FloatArray
 from robobt.world.compiled import record_dtype
+from robobt.world.records import BALL
 
 
 class Progress(Protocol):
@@ -44,11 +45,10 @@ PROGRESS = record_dtype(Progress)
 
 
 def progress_at(balls: FloatArray) -> NDArray[np.void]:
-    """Return the progress of episodes that begin with these balls (m, 4)."""
-    progress = np.zeros(len(balls), dtype=PROGRESS)
+    """Return the progress of episodes that begin with these balls (m, size(BALL))."""
+    starts, progress = balls.view(BALL)[:, 0], np.zeros(len(balls), dtype=PROGRESS)
     progress["kick_tick"] = -1.0
-    progress["ball_x"] = balls[:, 0]
-    progress["ball_y"] = balls[:, 1]
+    progress["ball_x"], progress["ball_y"] = starts["x"], starts["y"]
     for name in ("carried_x", "carried_y", "potential"):
         progress[name] = np.nan
     return progress

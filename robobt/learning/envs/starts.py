@@ -8,9 +8,12 @@ import numpy as np
 
 from robobt.learning.envs.settings import Span
 from robobt.learning.envs.task import FloatArray, IntArray
+from robobt.sim.records import RecordArray, size
+from robobt.world.field import FieldGeometry
+from robobt.world.records import BALL, ROBOT, ROBOT_SIZE
 
-ROBOT_COLUMNS = ("x", "y", "heading", "vx", "vy", "omega")
-BALL_COLUMNS = ("ball_x", "ball_y", "ball_vx", "ball_vy")
+ROBOT_COLUMNS = ROBOT.names or ()
+BALL_COLUMNS = tuple(f"ball_{name}" for name in BALL.names or ())
 START_COLUMNS = (*ROBOT_COLUMNS, *BALL_COLUMNS)
 """Columns of a start with one robot: robot and ball in field coordinates [m, rad, m/s, rad/s]."""
 
@@ -23,6 +26,41 @@ def columns_of(robots: int) -> tuple[str, ...]:
     return (*names, *BALL_COLUMNS)
 
 
+def split(rows: FloatArray, robots: int) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return views of starts (m, S): robots (m, robots, ROBOT_SIZE), balls (m, size(BALL)) and the rest."""
+    ball = robots * ROBOT_SIZE
+    rest = ball + size(BALL)
+    return rows[:, :ball].reshape(len(rows), robots, ROBOT_SIZE), rows[:, ball:rest], rows[:, rest:]
+
+
+def parts_of(rows: FloatArray, robots: int) -> tuple[RecordArray, RecordArray, FloatArray]:
+    """Return :func:`split` with robots (m, robots) and balls (m,) as records."""
+    bodies, balls, rest = split(rows, robots)
+    return bodies.view(ROBOT)[..., 0], balls.view(BALL)[:, 0], rest
+
+
+def places_of(records: RecordArray) -> FloatArray:
+    """Return the places (..., 2) of robots or balls [m]."""
+    return np.stack((records["x"], records["y"]), axis=-1)
+
+
+def check_starts(rows: FloatArray, columns: Sequence[str], robots: int, field: FieldGeometry) -> None:
+    """Check starts (m, S) that somebody else has written.
+
+    Raises:
+        ValueError: other columns, a number that is not finite, or a place outside the walls.
+    """
+    if rows.ndim != 2 or rows.shape[1] != len(columns):
+        raise ValueError(f"starts must have the shape (m, {len(columns)}), not {rows.shape}")
+    if not np.isfinite(rows).all():
+        raise ValueError("a start is not finite")
+    bodies, balls, _ = parts_of(rows, robots)
+    x, y = field.outer
+    for places in (places_of(bodies), places_of(balls)):
+        if (np.abs(places) > (x, y)).any():
+            raise ValueError(f"a start lies outside the walls at ({x:g}, {y:g})")
+
+
 GIVE_UP = 1000
 """Draws of a start after which there is none that fits."""
 
@@ -32,10 +70,10 @@ _BLOCK = 8
 Sampler = Callable[[np.random.Generator, int], FloatArray]
 
 
-def velocities(rng: np.random.Generator, speed: Span, count: int) -> FloatArray:
-    """Draw ``count`` velocities (count, 2) in any direction, with a speed in the range [m/s]."""
+def velocities(rng: np.random.Generator, speed: Span, count: int) -> tuple[FloatArray, FloatArray]:
+    """Draw ``count`` velocities in any direction, along x and y, with a speed in the range [m/s]."""
     fast, towards = rng.uniform(*speed, count), rng.uniform(-np.pi, np.pi, count)
-    return np.column_stack((fast * np.cos(towards), fast * np.sin(towards)))
+    return fast * np.cos(towards), fast * np.sin(towards)
 
 
 class StartPool:
@@ -65,7 +103,7 @@ class StartPool:
         given = min(len(which), len(self._given) - self._next_given)
         first = self._next_given
         self._next_given += given
-        rows = np.empty((len(which), self._drawn.shape[2]))
+        rows = np.empty((len(which), self._drawn.shape[-1]))
         rows[:given] = self._given[first : first + given]
         for k, arena in enumerate(which[given:].tolist(), given):
             if self._next[arena] == _BLOCK:

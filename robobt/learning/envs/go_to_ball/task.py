@@ -21,6 +21,7 @@ from robobt.learning.envs.go_to_ball.starts import columns_of, go_to_ball_starts
 from robobt.learning.envs.judging import After, Ledger, after, begin_tick, end_tick, is_over, parameters
 from robobt.learning.envs.progress import PROGRESS, Progress
 from robobt.learning.envs.scripted import BEHIND, drive_and_face, drive_to_shoot, freest_way
+from robobt.learning.envs.starts import parts_of, split
 from robobt.learning.envs.task import Ends, FloatArray, IntArray
 from robobt.learning.opponents.patrols import TRAITS, Patrols
 from robobt.skills.ball.go_to_ball import GoToBall
@@ -151,7 +152,7 @@ class GoToBallTask(ArenaTask):
 
     def begin(self, starts: FloatArray, which: IntArray) -> None:
         """See :meth:`ArenaTask.begin`."""
-        traits = starts[:, 6 * self.robots + 4 :]
+        _, _, traits = split(starts, self.robots)
         self._patrols.restart(which, traits.reshape(len(which), self.robots - 1, len(TRAITS)))
 
     def oppose(self, commands: FloatArray) -> None:
@@ -168,10 +169,12 @@ class GoToBallTask(ArenaTask):
         reach = rule.distance
         if rule.rule in ("infrared", "held"):
             reach = body.face + BALL_RADIUS + body.sensor_depth
-        balls = starts[:, 6 * self.robots :]
-        way = np.hypot(balls[:, 0] - starts[:, 0], balls[:, 1] - starts[:, 1]) - reach
+        robots, ball, _ = parts_of(starts, self.robots)
+        robot = robots[:, 0]
+        way = np.hypot(ball["x"] - robot["x"], ball["y"] - robot["y"]) - reach
         way = np.maximum(way, 0.0)
-        way[np.any(starts[:, (3, 4)] != 0.0, axis=1) | np.any(balls[:, 2:4] != 0.0, axis=1)] = np.nan
+        for axis in ("vx", "vy"):
+            way[(robot[axis] != 0.0) | (ball[axis] != 0.0)] = np.nan
         fastest = max(limits.acceleration, limits.lateral_acceleration) * self._randomiser.acceleration[which]
         top_speed = limits.max_speed * self._randomiser.top_speed[which]
         return straight_line_time(way, np.minimum(top_speed, settings.action.max_speed), fastest)

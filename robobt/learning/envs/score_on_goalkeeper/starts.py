@@ -7,7 +7,7 @@ from math import pi
 import numpy as np
 
 from robobt.learning.envs.score_on_goalkeeper.settings import KeeperSettings, ScoreOnGoalkeeperSettings
-from robobt.learning.envs.starts import BALL_COLUMNS, ROBOT_COLUMNS, velocities
+from robobt.learning.envs.starts import BALL_COLUMNS, ROBOT_COLUMNS, parts_of, velocities
 from robobt.learning.envs.task import FloatArray
 from robobt.learning.opponents.keepers import FITTED, KINDS, TRAITS, real_population
 from robobt.world.geometry import wrap_angles
@@ -15,6 +15,9 @@ from robobt.world.state import BALL_RADIUS
 
 COLUMNS = (*ROBOT_COLUMNS, *(f"keeper_{name}" for name in ROBOT_COLUMNS), *BALL_COLUMNS, *TRAITS)
 """Columns of a start: attacker, goalkeeper, ball, and which goalkeeper it is."""
+
+KEEPER = np.dtype([(name, np.float64) for name in TRAITS])
+"""What makes a goalkeeper, by name."""
 
 _GAP = 3e-4
 """Between ball and front before the dribbler takes it [m]."""
@@ -35,36 +38,41 @@ def score_starts(settings: ScoreOnGoalkeeperSettings, rng: np.random.Generator, 
     far, turned = rng.random(count), rng.uniform(-pi, pi, count)
     if starts.easy:
         far, turned = far**2, turned * rng.random(count)
-    rows[:, 0] = x[1] - (x[1] - x[0]) * far
-    rows[:, 1] = rng.uniform(*y, count)
-    rows[:, 2] = wrap_angles(np.arctan2(-rows[:, 1], field.half_length - rows[:, 0]) + turned)
+    robots, ball, traits = parts_of(rows, 2)
+    robot, keeper = robots.T
+    farthest, nearest = x
+    robot["x"] = nearest - (nearest - farthest) * far
+    robot["y"] = rng.uniform(*y, count)
+    robot["heading"] = wrap_angles(np.arctan2(-robot["y"], field.half_length - robot["x"]) + turned)
     drifting = velocities(rng, starts.robot_speed, count)
-    ball = np.column_stack((rng.uniform(*x, count), rng.uniform(*y, count)))
+    ball_x, ball_y = rng.uniform(*x, count), rng.uniform(*y, count)
     rolling = velocities(rng, starts.ball_speed, count)
     # A ball that lies in the robot is moved away from it.
-    way = ball - rows[:, :2]
-    apart = np.maximum(np.hypot(way[:, 0], way[:, 1]), 1e-9)[:, None]
-    ball = np.where(apart < _APART, rows[:, :2] + way / apart * _APART, ball)
-    held = (rng.random(count) < starts.held)[:, None]
+    way_x, way_y = ball_x - robot["x"], ball_y - robot["y"]
+    apart = np.maximum(np.hypot(way_x, way_y), 1e-9)
+    ball_x = np.where(apart < _APART, robot["x"] + way_x / apart * _APART, ball_x)
+    ball_y = np.where(apart < _APART, robot["y"] + way_y / apart * _APART, ball_y)
+    held = rng.random(count) < starts.held
     ahead = settings.simulator.body.face + BALL_RADIUS + _GAP
-    mouth = rows[:, :2] + ahead * np.column_stack((np.cos(rows[:, 2]), np.sin(rows[:, 2])))
-    rows[:, 3:5] = np.where(held, 0.0, drifting)
-    rows[:, 12:14] = np.where(held, mouth, ball)
-    rows[:, 14:16] = np.where(held, 0.0, rolling)
-    rows[:, 16:] = keeper_traits(keepers, rng, count)
-    rows[:, 6] = field.half_length - rows[:, 18]
-    rows[:, 7] = rng.uniform(*starts.keeper_y, count)
-    rows[:, 8] = pi
+    ball["x"] = np.where(held, robot["x"] + ahead * np.cos(robot["heading"]), ball_x)
+    ball["y"] = np.where(held, robot["y"] + ahead * np.sin(robot["heading"]), ball_y)
+    robot["vx"], robot["vy"] = np.where(held, 0.0, drifting)
+    ball["vx"], ball["vy"] = np.where(held, 0.0, rolling)
+    traits[:] = keeper_traits(keepers, rng, count)
+    keeper["x"] = field.half_length - traits.view(KEEPER)["keeper_out"][:, 0]
+    keeper["y"] = rng.uniform(*starts.keeper_y, count)
+    keeper["heading"] = pi
     return rows
 
 
 def keeper_traits(keepers: KeeperSettings, rng: np.random.Generator, count: int) -> FloatArray:
-    """Draw ``count`` goalkeepers (count, 3), columns :data:`~robobt.learning.opponents.keepers.TRAITS`."""
-    rows = np.empty((count, len(TRAITS)))
-    rows[:, 0] = rng.choice([KINDS.index(kind) for kind in keepers.kinds], count)
-    rows[:, 1] = rng.uniform(*keepers.speed, count)
-    rows[:, 2] = rng.uniform(*keepers.out, count)
+    """Draw ``count`` goalkeepers (count, columns :data:`~robobt.learning.opponents.keepers.TRAITS`)."""
+    keeper = np.empty(count, KEEPER)
+    keeper["keeper_kind"] = rng.choice([KINDS.index(kind) for kind in keepers.kinds], count)
+    keeper["keeper_speed"] = rng.uniform(*keepers.speed, count)
+    keeper["keeper_out"] = rng.uniform(*keepers.out, count)
     if "fitted" in keepers.kinds:
-        fitted, real = rows[:, 0] == FITTED, real_population()
-        rows[fitted, 1] = real.max_speed * np.exp(real.spread * rng.standard_normal(count))[fitted]
-    return rows
+        fitted, real = keeper["keeper_kind"] == FITTED, real_population()
+        speeds = real.max_speed * np.exp(real.spread * rng.standard_normal(count))
+        keeper["keeper_speed"][fitted] = speeds[fitted]
+    return keeper.view(np.float64).reshape(count, -1)

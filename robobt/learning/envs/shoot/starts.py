@@ -8,10 +8,11 @@ import numpy as np
 
 from robobt.learning.envs.settings import Span
 from robobt.learning.envs.shoot.settings import ShootSettings
-from robobt.learning.envs.starts import GIVE_UP, START_COLUMNS, velocities
+from robobt.learning.envs.starts import GIVE_UP, START_COLUMNS, parts_of, velocities
 from robobt.learning.envs.task import FloatArray
 from robobt.sim.arenas import Arenas
-from robobt.sim.records import COMMAND, size
+from robobt.sim.records import COMMAND, RecordArray, size
+from robobt.world.records import BALL
 from robobt.world.state import BALL_RADIUS
 
 _GAP = 3e-4
@@ -28,40 +29,46 @@ def shoot_starts(settings: ShootSettings, rng: np.random.Generator, count: int) 
     x = starts.robot_x or (0.3, field.half_length - field.defense_depth - 0.3)
     y = starts.robot_y or (-field.half_width + 0.1, field.half_width - 0.1)
     rows = np.zeros((count, len(START_COLUMNS)))
-    rows[:, 0] = rng.uniform(*x, count)
-    rows[:, 1] = rng.uniform(*y, count)
-    rows[:, 2] = rng.uniform(*starts.heading, count)
-    rows[:, 5] = rng.uniform(*starts.robot_turn, count)
+    robots, ball, _ = parts_of(rows, 1)
+    robot = robots[:, 0]
+    robot["x"] = rng.uniform(*x, count)
+    robot["y"] = rng.uniform(*y, count)
+    robot["heading"] = rng.uniform(*starts.heading, count)
+    robot["omega"] = rng.uniform(*starts.robot_turn, count)
     aside = rng.uniform(*starts.ball_aside, count)
     ahead, across = _held_ball(settings)
     grid = np.linspace(*starts.ball_aside, len(ahead))
     dx, dy = np.interp(aside, grid, ahead), np.interp(aside, grid, across)
-    cos, sin = np.cos(rows[:, 2]), np.sin(rows[:, 2])
-    rows[:, 6] = rows[:, 0] + cos * dx - sin * dy
-    rows[:, 7] = rows[:, 1] + sin * dx + cos * dy
+    cos, sin = np.cos(robot["heading"]), np.sin(robot["heading"])
+    ball["x"] = robot["x"] + cos * dx - sin * dy
+    ball["y"] = robot["y"] + sin * dx + cos * dy
     # The ball goes round with the robot.
-    rows[:, 8] = -rows[:, 5] * (rows[:, 7] - rows[:, 1])
-    rows[:, 9] = rows[:, 5] * (rows[:, 6] - rows[:, 0])
+    ball["vx"] = -robot["omega"] * (ball["y"] - robot["y"])
+    ball["vy"] = robot["omega"] * (ball["x"] - robot["x"])
     if starts.robot_speed != (0.0, 0.0):
-        rows[:, 3:5] = _drifts(settings, rng, rows, x, y)
-        rows[:, 8:10] += rows[:, 3:5]
+        robot["vx"], robot["vy"] = _drifts(settings, rng, robot, x, y)
+        ball["vx"] += robot["vx"]
+        ball["vy"] += robot["vy"]
     return rows
 
 
 def _drifts(
-    settings: ShootSettings, rng: np.random.Generator, rows: FloatArray, x: Span, y: Span
+    settings: ShootSettings, rng: np.random.Generator, robots: RecordArray, x: Span, y: Span
 ) -> FloatArray:
-    """Draw velocities from which the robots come to rest inside the ranges."""
+    """Draw velocities along x and y, (2, n), from which the robots come to rest inside the ranges."""
     limits = settings.robot_limits
     braking = min(limits.braking, limits.lateral_braking)
-    drifts = np.zeros((len(rows), 2))
-    open_ = np.arange(len(rows))
+    (least_x, most_x), (least_y, most_y) = x, y
+    drifts = np.zeros((2, len(robots)))
+    open_ = np.arange(len(robots))
     for _ in range(GIVE_UP):
-        drifts[open_] = velocities(rng, settings.starts.robot_speed, len(open_))
-        moved = drifts[open_]
-        rest = rows[open_, :2] + moved * np.hypot(moved[:, :1], moved[:, 1:]) / (2.0 * braking)
-        inside = (rest >= (x[0], y[0])) & (rest <= (x[1], y[1]))
-        open_ = open_[~inside.all(axis=1)]
+        vx, vy = velocities(rng, settings.starts.robot_speed, len(open_))
+        drifts[:, open_] = vx, vy
+        speed = np.hypot(vx, vy)
+        rest_x = robots["x"][open_] + vx * speed / (2.0 * braking)
+        rest_y = robots["y"][open_] + vy * speed / (2.0 * braking)
+        inside = (rest_x >= least_x) & (rest_x <= most_x) & (rest_y >= least_y) & (rest_y <= most_y)
+        open_ = open_[~inside]
         if len(open_) == 0:
             return drifts
     raise ValueError("starts: robots of that speed do not stop inside the ranges")
@@ -78,10 +85,12 @@ def _held_ball(settings: ShootSettings) -> tuple[FloatArray, FloatArray]:
     simulator = settings.stepped_simulator
     arenas = Arenas(settings.field, [None], simulator, settings.period, len(points))
     ahead = simulator.body.face + BALL_RADIUS + _GAP
-    balls = np.column_stack((np.full(len(points), ahead), points, np.zeros((len(points), 2))))
-    arenas.place(np.zeros((len(points), 1, 3)), balls)
+    balls = np.zeros(len(points), BALL)
+    balls["x"], balls["y"] = ahead, points
+    arenas.place(np.zeros((len(points), 1, 3)), balls.view(np.float64))
     commands = np.zeros((len(points), 1, size(COMMAND)))
     commands.view(COMMAND)["dribbler"] = float(settings.action.dribbler)
     for _ in range(settings.starts.warm_up):
         arenas.step(commands)
-    return arenas.balls[:, 0].copy(), arenas.balls[:, 1].copy()
+    held = arenas.balls.view(BALL)[:, 0]
+    return held["x"].copy(), held["y"].copy()

@@ -6,11 +6,13 @@ from math import pi
 
 import numpy as np
 
-from robobt.learning.envs.score_on_goalkeeper.starts import keeper_traits
+from robobt.learning.envs.score_on_goalkeeper.starts import KEEPER, keeper_traits
+from robobt.learning.envs.settings import Span
 from robobt.learning.envs.soccer.settings import GOALKEEPER, SoccerSettings
-from robobt.learning.envs.starts import BALL_COLUMNS, GIVE_UP, ROBOT_COLUMNS, velocities
+from robobt.learning.envs.starts import BALL_COLUMNS, GIVE_UP, ROBOT_COLUMNS, parts_of, velocities
 from robobt.learning.envs.task import FloatArray
 from robobt.learning.opponents.keepers import TRAITS
+from robobt.sim.records import RecordArray
 from robobt.world.state import BALL_RADIUS
 
 _GAP = 3e-4
@@ -41,35 +43,34 @@ def soccer_starts(settings: SoccerSettings, rng: np.random.Generator, count: int
     starts, field, roles, keeping = settings.starts, settings.field, settings.roles, settings.keeping
     blue, total = len(settings.blue), len(roles)
     rows = np.zeros((count, len(columns_of(settings))))
-    robots = rows[:, : 6 * total].reshape(count, total, 6)
-    ball, traits = rows[:, 6 * total : 6 * total + 4], rows[:, 6 * total + 4 :]
+    robots, ball, traits = parts_of(rows, total)
+    keepers = traits.view(KEEPER)
     keeper = 0
-    places = np.zeros((count, 0, 2))
     for index in range(total):
-        side = -1.0 if index < blue else 1.0
-        robots[:, index, 2] = rng.uniform(-pi, pi, count)
+        robot, side = robots[:, index], -1.0 if index < blue else 1.0
+        robot["heading"] = rng.uniform(-pi, pi, count)
         if roles[index] == GOALKEEPER:
-            own = traits[:, 3 * keeper : 3 * keeper + 3]
-            own[:] = keeper_traits(settings.keepers, rng, count)
-            robots[:, index, 0] = side * (field.half_length - own[:, 2])
+            own = keepers[:, keeper]
+            own[:] = keeper_traits(settings.keepers, rng, count).view(KEEPER)[:, 0]
+            robot["x"] = side * (field.half_length - own["keeper_out"])
             keeper += 1
         elif keeping[index]:
-            robots[:, index, 0] = side * (field.half_length - rng.uniform(*settings.keepers.out, count))
+            robot["x"] = side * (field.half_length - rng.uniform(*settings.keepers.out, count))
         else:
             x = starts.blue_x if index < blue else starts.yellow_x
-            robots[:, index, :2] = _free(rng, (x, starts.y), places, starts.apart)
+            robot["x"], robot["y"] = _free(rng, (x, starts.y), robots[:, :index], starts.apart)
         if keeping[index]:
-            robots[:, index, 2] = 0.0 if side < 0.0 else pi
-        places = np.concatenate((places, robots[:, index : index + 1, :2]), axis=1)
-    ball[:, :2] = _free(rng, (starts.ball_x, starts.y), places, starts.apart)
-    ball[:, 2:] = velocities(rng, starts.ball_speed, count)
+            robot["heading"] = 0.0 if side < 0.0 else pi
+    ball["x"], ball["y"] = _free(rng, (starts.ball_x, starts.y), robots, starts.apart)
+    ball["vx"], ball["vy"] = velocities(rng, starts.ball_speed, count)
     coming, aside = rng.random(count) < starts.coming, rng.uniform(-_ASIDE, _ASIDE, (count, 2))
     fielders = [index for index in range(blue) if not keeping[index]]
     if starts.coming > 0.0 and fielders:
         # Through a point beside it, as an inexact pass would be.
-        way = robots[:, fielders[0], :2] + aside - ball[:, :2]
-        speed = np.hypot(ball[:, 2], ball[:, 3]) / np.hypot(*way.T)
-        ball[coming, 2:] = (way * speed[:, None])[coming]
+        receiver, (beside_x, beside_y) = robots[:, fielders[0]], aside.T
+        way_x, way_y = receiver["x"] + beside_x - ball["x"], receiver["y"] + beside_y - ball["y"]
+        speed = np.hypot(ball["vx"], ball["vy"]) / np.hypot(way_x, way_y)
+        ball["vx"][coming], ball["vy"][coming] = (way_x * speed)[coming], (way_y * speed)[coming]
     held = rng.random(count) < starts.held
     by_blue = np.full(count, starts.holder == "blue")
     if starts.holder == "either":
@@ -79,24 +80,25 @@ def soccer_starts(settings: SoccerSettings, rng: np.random.Generator, count: int
         players = [index for index in range(first, last) if not keeping[index]]
         if players:
             holder = robots[chosen, players[0]]
-            front = np.column_stack((np.cos(holder[:, 2]), np.sin(holder[:, 2])))
-            ball[chosen, :2] = holder[:, :2] + ahead * front
-            ball[chosen, 2:] = 0.0
+            ball["x"][chosen] = holder["x"] + ahead * np.cos(holder["heading"])
+            ball["y"][chosen] = holder["y"] + ahead * np.sin(holder["heading"])
+            ball["vx"][chosen] = ball["vy"][chosen] = 0.0
     return rows
 
 
 def _free(
     rng: np.random.Generator,
-    ranges: tuple[tuple[float, float], tuple[float, float]],
-    taken: FloatArray,
+    ranges: tuple[Span, Span],
+    taken: RecordArray,
     apart: float,
 ) -> FloatArray:
-    """Draw a place in each start (n, 2) that is far enough from those taken (n, k, 2)."""
-    drawn = np.zeros((len(taken), 2))
+    """Draw a place in each start, x and y (2, n), that is far enough from the robots ``taken`` (n, k)."""
+    drawn = np.zeros((2, len(taken)))
     open_ = np.arange(len(taken))
     for _ in range(GIVE_UP):
-        drawn[open_] = np.column_stack([rng.uniform(*span, len(open_)) for span in ranges])
-        close = np.hypot(*(taken[open_] - drawn[open_, None]).transpose(2, 0, 1)) < apart
+        x, y = drawn[:, open_] = [rng.uniform(*span, len(open_)) for span in ranges]
+        others = taken[open_]
+        close = np.hypot(others["x"] - x[:, None], others["y"] - y[:, None]) < apart
         open_ = open_[close.any(axis=1)]
         if len(open_) == 0:
             return drawn

@@ -15,6 +15,7 @@ from robobt.learning.envs.soccer.restarts import Restarts
 from robobt.learning.envs.soccer.rewards import MEMORY
 from robobt.learning.envs.soccer.settings import AIMS, GOALKEEPER, PLAY, SoccerSettings
 from robobt.learning.envs.soccer.starts import columns_of, soccer_starts
+from robobt.learning.envs.starts import split
 from robobt.learning.envs.task import Ends, FloatArray, IntArray, StepResult
 from robobt.learning.opponents.challengers import Challengers
 from robobt.learning.opponents.field_players import FieldPlayers
@@ -167,7 +168,7 @@ class SoccerTask(ArenaTask):
         self._memories[which] = 0.0
         self._forget(which)
         self._restarts.begin(which)
-        traits = starts[:, 6 * self.robots + 4 :]
+        _, _, traits = split(starts, self.robots)
         for k, keeper in enumerate(self._keepers):
             keeper.restart(which, traits[:, len(TRAITS) * k : len(TRAITS) * (k + 1)])
         self._challengers.restart(which)
