@@ -10,17 +10,17 @@ import numpy as np
 from gymnasium.spaces import Box
 from numpy.typing import ArrayLike, NDArray
 
-from robobt.learning.envs.bounds import BUMP, bounded, farthest, seen_speed, seen_turn
-from robobt.learning.envs.central import BALL, EACH, states_of
+from robobt.learning.envs.bounds import bounded, ranges_of, scale_of
+from robobt.learning.envs.central import TURNED, states_of
 from robobt.learning.envs.episodes import Episodes
 from robobt.learning.envs.judging import Ledger, count, goals
 from robobt.learning.envs.perception import Perception
 from robobt.learning.envs.progress import PROGRESS, progress_at
 from robobt.learning.envs.randomiser import Randomiser
 from robobt.learning.envs.settings import TaskSettings
-from robobt.learning.envs.starts import START_COLUMNS, StartPool, columns_of
+from robobt.learning.envs.starts import START_COLUMNS, StartPool, check_starts, columns_of, split
 from robobt.learning.envs.task import BoolArray, Ends, FloatArray, IntArray, StepResult
-from robobt.learning.envs.tick import Tick, call, checked_ends, checked_starts, checked_terms, error_of
+from robobt.learning.envs.tick import Tick, call, checked_starts, checked_terms, end_by, error_of
 from robobt.models.actions import fill_commands
 from robobt.sim.arenas import Arenas
 from robobt.sim.records import COMMAND, size
@@ -29,7 +29,7 @@ from robobt.world.compiled import numbers_of
 from robobt.world.features import ObservationSpec
 from robobt.world.limits import RobotLimits
 from robobt.world.observation import Observation, seen
-from robobt.world.state import ROBOT_RADIUS
+from robobt.world.records import BALL
 
 Policy = Callable[[FloatArray], FloatArray]
 """Observations (n, O) to actions (n, A)."""
@@ -60,7 +60,7 @@ class ArenaTask:
         terms: the record of the reward's terms, one number each.
         arenas: the simulator, from the first ``reset`` on.
         observation: what is observed.
-        robots: in an arena; a start's first six columns for each are its state.
+        robots: in an arena; a start's first columns are the state of each.
         blue: how many of them, the first, are the learner's team.
         learners: indices of the robots that learn.
         start_columns: what a start consists of: each robot, the ball, and whatever else a task starts from.
@@ -100,8 +100,9 @@ class ArenaTask:
             raise ValueError(
                 f"{type(self).__name__}: learners must be of the robots {known}, not {self.learners}"
             )
-        if len(self.start_columns) < 6 * self.robots + 4:
-            self.start_columns = columns_of(self.robots)
+        columns = columns_of(self.robots)
+        if len(self.start_columns) < len(columns):
+            self.start_columns = columns
         self.settings = settings = self.Settings() if settings is None else settings
         self.n = n
         self.action = settings.action
@@ -182,20 +183,7 @@ class ArenaTask:
 
         They follow from walls, limits, kicker and noise.
         """
-        settings, noise = self.settings, self.settings.noise
-        limits, own = settings.simulator.limits, settings.robot_limits
-        far, fastest = farthest(settings), own.max_speed * settings.randomisation.top_speed[1]
-        driven = max(fastest, limits.max_speed) + BUMP
-        turned = max(own.max_turn, limits.max_turn) + driven / ROBOT_RADIUS
-        # A ball comes off a robot that drives and turns at most so much faster than it was kicked.
-        kicked = settings.simulator.kicker.max_speed + driven + turned * ROBOT_RADIUS + BUMP
-        return {
-            "far": far,
-            "goal": far + settings.field.goal_width,
-            "speed": seen_speed(settings, driven, noise.robot_position),
-            "turn": seen_turn(settings, turned),
-            "ball_speed": seen_speed(settings, max(kicked, settings.ball_speed), noise.ball_position),
-        }
+        return ranges_of(self.settings)
 
     @property
     def space(self) -> Box[np.float32]:
@@ -205,8 +193,7 @@ class ArenaTask:
     @property
     def scale(self) -> tuple[float, ...]:
         """Typical size of each entry of a learner's observation, in its unit."""
-        sizes = [one.scale for one in self.observation.entries]
-        return tuple([getattr(self.action, size) if isinstance(size, str) else size for size in sizes])
+        return scale_of(self.observation, self.action)
 
     @property
     def central_scale(self) -> tuple[float, ...]:
@@ -220,7 +207,7 @@ class ArenaTask:
     @property
     def state_size(self) -> int:
         """Length of an arena's :meth:`state`."""
-        return EACH * self.robots + BALL
+        return size(TURNED) * self.robots + size(BALL)
 
     def state(self) -> FloatArray:
         """Return the arenas' true states, (n, 7 R + 4), for whatever learns from them.
@@ -317,7 +304,7 @@ class ArenaTask:
             ValueError: wrong shape, a number that is not finite, or a place outside the walls.
         """
         rows = np.atleast_2d(np.array(starts, dtype=np.float64))
-        self._check_starts(rows)
+        check_starts(rows, self.start_columns, self.robots, self.settings.field)
         if seed is not None or not self._seeded:
             self._seed_all(self._seed if seed is None else seed)
         self._build()
@@ -387,9 +374,9 @@ class ArenaTask:
         if limits.carry_aside is None:
             return self._commands
         commands, learners = self._commands.copy(), self.learners
-        aside = np.clip(commands[:, learners, 1], -limits.carry_aside, limits.carry_aside)
-        carrying = self.arenas.contact[:, learners]
-        commands[:, learners, 1] = np.where(carrying, aside, commands[:, learners, 1])
+        aside = commands.view(COMMAND)["vy"][..., 0]
+        slow = np.clip(aside[:, learners], -limits.carry_aside, limits.carry_aside)
+        aside[:, learners] = np.where(self.arenas.contact[:, learners], slow, aside[:, learners])
         return commands
 
     def _step_with_own(self, actions: FloatArray, rewards: FloatArray, ends: Ends) -> bool:
@@ -415,12 +402,7 @@ class ArenaTask:
             terms={name: self._judged_terms[name].copy() for name in self.terms.names or ()},
         )
         if self._own_ends:
-            success, failed = checked_ends(self, tick, self.n)
-            tick.success, tick.failed = success & going, failed & going & ~success
-            over = tick.success | tick.failed
-            ends.success[:] |= tick.success
-            ends.terminated[:] |= over
-            ends.truncated[:] |= going & ~over & (tick.ticks >= self.settings.time_limit)
+            end_by(self, tick, ends, self.settings.time_limit)
         else:
             for part, judged in zip(ends, judged_ends, strict=True):
                 part[:] = judged
@@ -470,8 +452,7 @@ class ArenaTask:
         rows, index = self._pool.take(which)
         self._starts[which] = index
         self._randomiser.draw(which)
-        robots = rows[:, : 6 * self.robots].reshape(len(rows), self.robots, 6)
-        balls = rows[:, 6 * self.robots : 6 * self.robots + 4]
+        robots, balls, _ = split(rows, self.robots)
         self.arenas.place(robots, balls, which)
         self.begin(rows, which)
         self._progress[which] = progress_at(balls)
@@ -495,17 +476,6 @@ class ArenaTask:
             total_reward=progress["total_reward"],
             terms=self._terms[which],
         )
-
-    def _check_starts(self, rows: FloatArray) -> None:
-        columns = self.start_columns
-        if rows.ndim != 2 or rows.shape[1] != len(columns):
-            raise ValueError(f"starts must have the shape (m, {len(columns)}), not {rows.shape}")
-        if not np.isfinite(rows).all():
-            raise ValueError("a start is not finite")
-        most = self.settings.field.outer
-        places = [*range(0, 6 * self.robots, 6), 6 * self.robots]
-        if (np.abs(rows[:, places]) > most[0]).any() or (np.abs(rows[:, 1:][:, places]) > most[1]).any():
-            raise ValueError(f"a start lies outside the walls at ({most[0]:g}, {most[1]:g})")
 
 
 _TASKS[TaskSettings] = ArenaTask

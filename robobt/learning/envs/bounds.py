@@ -11,7 +11,9 @@ from gymnasium.spaces import Box
 from robobt.config.errors import unknown_name
 from robobt.learning.envs.perception import CUT_OFF
 from robobt.learning.envs.settings import TaskSettings
+from robobt.models.actions import ActionScaling
 from robobt.world.observation import ObservationSpec
+from robobt.world.state import ROBOT_RADIUS
 
 BUMP = 0.5
 """What a collision may add to a speed for an instant [m/s]."""
@@ -30,6 +32,30 @@ def bounded(spec: ObservationSpec, ranges: Mapping[str, float]) -> Box[np.float3
     high = [ranges[one.range] if isinstance(one.range, str) else one.range for one in spec.entries]
     low = [-most if one.signed else 0.0 for one, most in zip(spec.entries, high, strict=True)]
     return Box(np.array(low, dtype=np.float32), np.array(high, dtype=np.float32), dtype=np.float32)
+
+
+def scale_of(spec: ObservationSpec, action: ActionScaling) -> tuple[float, ...]:
+    """Return the typical magnitude of each entry of ``spec``, where a robot acts as ``action`` says."""
+    sizes = [one.scale for one in spec.entries]
+    return tuple([getattr(action, size) if isinstance(size, str) else size for size in sizes])
+
+
+def ranges_of(settings: TaskSettings) -> dict[str, float]:
+    """Return how large the quantities are at most that entries of most observations name as their ranges."""
+    noise, limits, own = settings.noise, settings.simulator.limits, settings.robot_limits
+    _, fastest = settings.randomisation.top_speed
+    driven = max(own.max_speed * fastest, limits.max_speed) + BUMP
+    turned = max(own.max_turn, limits.max_turn) + driven / ROBOT_RADIUS
+    # A ball comes off a robot that drives and turns at most so much faster than it was kicked.
+    kicked = settings.simulator.kicker.max_speed + driven + turned * ROBOT_RADIUS + BUMP
+    far = farthest(settings)
+    return {
+        "far": far,
+        "goal": far + settings.field.goal_width,
+        "speed": seen_speed(settings, driven, noise.robot_position),
+        "turn": seen_turn(settings, turned),
+        "ball_speed": seen_speed(settings, max(kicked, settings.ball_speed), noise.ball_position),
+    }
 
 
 def farthest(settings: TaskSettings) -> float:

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from robobt.config.errors import RobobtError
-from robobt.learning.envs.task import BoolArray, FloatArray
+from robobt.learning.envs.task import BoolArray, Ends, FloatArray
 from robobt.signals import Terminated
 from robobt.world.observation import Seen
 
@@ -110,6 +110,21 @@ def checked_ends(task: object, tick: Tick, n: int) -> tuple[BoolArray, BoolArray
         raise error_of(type(task), "ends", problem)
     success, failed = (np.broadcast_to(np.asarray(part, dtype=np.bool_), n) for part in parts)
     return success, failed
+
+
+def end_by(task: object, tick: Tick, ends: Ends, time_limit: int) -> None:
+    """Fill ``ends`` by a task's own ``ends`` and by the time limit, but for episodes that had ended already.
+
+    Raises:
+        TaskError: see :func:`checked_ends`.
+    """
+    going = ~ends.over
+    success, failed = checked_ends(task, tick, len(going))
+    tick.success, tick.failed = success & going, failed & going & ~success
+    over = tick.success | tick.failed
+    ends.success[:] |= tick.success
+    ends.terminated[:] |= over
+    ends.truncated[:] |= going & ~over & (tick.ticks >= time_limit)
 
 
 def checked_terms(task: object, tick: Tick, n: int) -> dict[str, FloatArray]:
