@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from functools import lru_cache
 from math import cos, hypot, pi, sin
-from typing import NamedTuple, Protocol
+from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -156,8 +155,7 @@ def _rate(
     numbers: FloatArray,
 ) -> NDArray[np.record]:
     """Rate passes to points (G, 2) of the robots ``owners``; return the best to each, :class:`_Rated`."""
-    out = np.zeros(len(points), dtype=_RATED)
-    rated: Sequence[_Rated] = out
+    rated: Any = np.zeros(len(points), dtype=_RATED)
     tactics: AppliedTactics = numbers.view(TACTICS)[0]
     own, opponents = mover_records(own_), mover_records(opponents_)
     for g in range(len(points)):
@@ -165,7 +163,8 @@ def _rate(
         length = hypot(x - ox, y - oy)
         if length < allowed.shortest or not _can_be_target(x, y, allowed.area_gap, tactics):
             continue
-        i, best = owners[g], rated[g]
+        i = owners[g]
+        best: _Rated = rated[g]
         turn = np.arctan2(y - oy, x - ox) - heading
         turn = abs((turn + pi) % (2.0 * pi) - pi)
         delay = 0.1 + turn / tactics.turn_rate
@@ -212,7 +211,8 @@ def _rate(
             if score > best.score:
                 best.score, best.speed, best.wait = score, speed, max(0.0, ready - flight)
                 best.chip = 1.0 if kind == _CHIPPED else 0.0
-    return out
+    found: NDArray[np.record] = rated
+    return found
 
 
 @compiled
