@@ -28,6 +28,7 @@ from robobt.learning.opponents.patrols import TRAITS, Patrols
 from robobt.match import Match, Scenario
 from robobt.match.loop import WorldFactory
 from robobt.plays.base import PLAYS
+from robobt.sim.records import COMMAND, size
 from robobt.skills import GoToBall
 from robobt.skills.base import Skill, skill
 from robobt.statistics import mean_interval
@@ -66,7 +67,7 @@ class Patrol(Skill):
         """Drive."""
         me = self.me
         robots = np.array([[[me.x, me.y, me.heading, me.vx, me.vy, me.omega]]])
-        commands = np.zeros((1, 1, 8))
+        commands = np.zeros((1, 1, size(COMMAND)))
         self._patrols.decide(robots, commands)
         self.store.command = RobotCommand(*commands[0, 0, :3].tolist())
         return self.run()

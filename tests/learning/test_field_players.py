@@ -10,6 +10,7 @@ import pytest
 from robobt.learning.opponents.field_players import FieldPlayers
 from robobt.plays.baselines.agreement import Agreement
 from robobt.plays.baselines.mark_opponent import MarkOpponent
+from robobt.sim.records import COMMAND, size
 from robobt.skills import Wall
 from robobt.skills.base import Skill
 from robobt.tree import Behaviour
@@ -87,7 +88,7 @@ def test_they_stand_where_the_skill_stands(role: str, team: Team, monkeypatch: p
     robots, balls, contact = scenes(n)
     roles = [role if first <= k < first + SIDE else "learner" for k in range(2 * SIDE)]
     players = FieldPlayers(DIVISION_B, RobotLimits(), AGE, roles, SIDE)
-    commands = np.zeros((n, 2 * SIDE, 6))
+    commands = np.zeros((n, 2 * SIDE, size(COMMAND)))
     players.decide(robots, balls, contact, commands)
     c, s = np.cos(robots[..., 2]), np.sin(robots[..., 2])
     vx, vy = commands[..., 0], commands[..., 1]

@@ -7,16 +7,7 @@ from math import pi
 import numpy as np
 import pytest
 
-from robobt.learning.opponents.goalkeepers import (
-    AIM,
-    CLEAR,
-    COVER,
-    FETCH,
-    HOME,
-    SHOT,
-    FittedGoalkeepers,
-    Goalkeepers,
-)
+from robobt.learning.opponents.goalkeepers import Case, FittedGoalkeepers, Goalkeepers
 from robobt.plays import goalkeeper
 from robobt.plays.goalkeeper import fitted_goalkeeper
 from robobt.sim.arenas import Arenas
@@ -123,7 +114,7 @@ def decides_as(keepers: Goalkeepers, trees: list[Alone], limits: RobotLimits, na
             case = int(keepers.cases[i])
             seen.add(case)
             assert name == names[case]
-            if case in (FETCH, CLEAR):
+            if case in (Case.FETCH, Case.CLEAR):
                 assert (commands[i] == 0.0).all()
                 continue
             told = tree.command
@@ -133,7 +124,7 @@ def decides_as(keepers: Goalkeepers, trees: list[Alone], limits: RobotLimits, na
         robots[..., :2] += PERIOD * robots[..., 3:5]
         balls[:, :2] += PERIOD * balls[:, 2:]
         balls[:, 2:] *= rng.choice([0.9, 0.99, 1.0], (n, 1))
-    assert seen == {AIM, SHOT, FETCH, CLEAR, COVER, HOME}
+    assert seen == set(Case)
 
 
 def shots(n: int, arenas: int) -> tuple[FloatArray, FloatArray]:
@@ -176,10 +167,10 @@ def test_a_restarted_goalkeeper_has_forgotten_the_ball_that_it_fetched() -> None
     robots, contact = np.tile([4.35, 0.0, pi, 0.0, 0.0, 0.0], (2, 1, 1)), np.zeros((2, 1), dtype=bool)
     keepers, commands = Goalkeepers(DIVISION_B, RobotLimits(), PERIOD, 2), np.empty((2, 6))
     keepers.decide(robots, np.tile([3.4, 0.0, 0.0, 0.0], (2, 1)), contact, 0, commands)
-    assert keepers.cases.tolist() == [FETCH, FETCH]
+    assert keepers.cases.tolist() == [Case.FETCH, Case.FETCH]
     keepers.restart(np.array([1]))
     keepers.decide(robots, np.tile([3.4, 0.0, -0.3, 0.0], (2, 1)), contact, 0, commands)
-    assert keepers.cases.tolist() == [FETCH, COVER]
+    assert keepers.cases.tolist() == [Case.FETCH, Case.COVER]
 
 
 @pytest.mark.parametrize("speed", [0.0, -1.0, float("nan"), float("inf")])

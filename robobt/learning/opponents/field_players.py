@@ -3,34 +3,48 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from enum import IntEnum
 from math import atan2, cos, hypot, inf, sin, sqrt
 
 import numpy as np
 from numpy.typing import NDArray
 
+from robobt.learning.opponents.sides import Arenas, Side, side_of
+from robobt.learning.opponents.straight import DRIVE, Drive, drive_of, drive_straight
 from robobt.plays.baselines.agreement import MARK_FROM
 from robobt.plays.baselines.mark_opponent import MarkOpponent
+from robobt.sim.records import COMMAND, Command
 from robobt.skills.defence.wall import wall_place
 from robobt.world.compiled import compilable, compiled, numbers_dtype, numbers_of
 from robobt.world.field import FieldGeometry
-from robobt.world.geometry import FloatArray, wrap_angle
+from robobt.world.geometry import FloatArray, Point, wrap_angle
 from robobt.world.limits import RobotLimits
+from robobt.world.records import BALL, Ball, Robot, robot_records
 
-PLAYERS = ("still", "press", "mark", "wall", "attack", "pass", "redirect")
-"""What a field player does.
 
-``still`` stands; ``press`` drives at the ball. ``wall`` stands where the skill ``Wall`` does, at the edge of
-its own defence area on the ball's line to its goal, several of them side by side; ``mark`` where
-``MarkOpponent`` does, but that whom it marks already is not preferred. ``attack`` and ``pass``: whoever of
-them is nearest fetches the ball and carries it to a shot at the corner farther from the goalkeeper, or turns
-to the mate with the freest way and passes; the others wait, those who attack before the goal. ``redirect``
-waits on the ball's way, turned to the goal, and kicks it as it comes.
-"""
+class Role(IntEnum):
+    """What a field player does.
 
-_STILL, _PRESS, _MARK, _WALL, _ATTACK, _PASS, _REDIRECT = range(7)
+    ``still`` stands; ``press`` drives at the ball. ``wall`` stands where the skill ``Wall`` does, at the edge
+    of its own defence area on the ball's line to its goal, several of them side by side; ``mark`` where
+    ``MarkOpponent`` does, but that whom it marks already is not preferred. ``attack`` and ``pass``: whoever
+    of them is nearest fetches the ball and carries it to a shot at the corner farther from the goalkeeper, or
+    turns to the mate with the freest way and passes; the others wait, those who attack before the goal.
+    ``redirect`` waits on the ball's way, turned to the goal, and kicks it as it comes.
+    """
+
+    STILL = 0
+    PRESS = 1
+    MARK = 2
+    WALL = 3
+    ATTACK = 4
+    PASS = 5
+    REDIRECT = 6
+
+
+PLAYERS = tuple(role.name.lower() for role in Role)
+"""The roles as settings name them."""
 _FIELD = numbers_dtype(FieldGeometry)
-_LOOK = 6.0
-"""How fast they turn for each radian [1/s]."""
 _GENTLE = 2.5
 """At most so fast with the ball [rad/s]."""
 _CARRYING = 1.2
@@ -61,7 +75,7 @@ class FieldPlayers:
         field: dimensions.
         limits: what they can do.
         period: control period [s].
-        roles: by the robots' indices, of :data:`PLAYERS`; the others' are left alone.
+        roles: by the robots' indices, names of :class:`Role`; the others' are left alone.
         blue: how many of an arena's robots, the first, attack towards +x.
         speed: their top speed [m/s]; None for the limits'.
     """
@@ -75,220 +89,191 @@ class FieldPlayers:
         blue: int,
         speed: float | None = None,
     ) -> None:
-        self._field = numbers_of(field)
+        self._field, self._drive = numbers_of(field), drive_of(limits, period)
         top = limits.max_speed if speed is None else min(speed, limits.max_speed)
-        self._drive = np.array([top, min(limits.braking, limits.lateral_braking), limits.max_turn, period])
+        self._most = top, limits.max_turn
         self._roles = np.array([PLAYERS.index(role) if role in PLAYERS else -1 for role in roles])
+        self._fetch = np.isin(self._roles, (Role.ATTACK, Role.PASS))
         self._blue = blue
         self.any = bool((self._roles >= 0).any())
 
     def decide(
         self, robots: FloatArray, balls: FloatArray, contact: NDArray[np.bool_], commands: FloatArray
     ) -> None:
-        """Decide one control tick: fill these robots' commands (n, R, >= 6), given the arenas' state."""
+        """Decide one control tick: fill these robots' commands (n, R, size(COMMAND))."""
         if self.any:
-            _decide(self._field, self._drive, self._roles, self._blue, robots, balls, contact, commands)
+            roles, arenas = (self._roles, self._fetch, self._blue), (robots, balls, contact)
+            _decide(self._field, self._drive, self._most, roles, arenas, commands)
 
 
 @compiled
 def _decide(
     field_: FloatArray,
-    drive: FloatArray,
-    roles: NDArray[np.int64],
-    blue: int,
-    robots: FloatArray,
-    balls: FloatArray,
-    contact: NDArray[np.bool_],
+    drive_: FloatArray,
+    most: tuple[float, float],
+    roles_: tuple[NDArray[np.int64], NDArray[np.bool_], int],
+    arenas: Arenas,
     commands: FloatArray,
 ) -> None:
     field: FieldGeometry = field_.view(_FIELD)[0]
-    count = len(roles)
+    drive: Drive = drive_.view(DRIVE)[0]
+    (roles, fetch, blue), (robots, balls, contact) = roles_, arenas
     for i in range(len(balls)):
-        ball, all_ = balls[i], robots[i]
-        for r in range(count):
+        all_, ball = robot_records(robots[i]), balls[i].view(BALL)[0]
+        for r in range(len(roles)):
             if roles[r] < 0:
                 continue
-            me, role, command = all_[r], roles[r], commands[i, r]
-            sign = 1.0 if r < blue else -1.0
-            first, last = (0, blue) if r < blue else (blue, count)
-            x, y, look_x, look_y, top, kick = me[0], me[1], ball[0], ball[1], drive[0], 0.0
-            turn = drive[2]
-            if role == _PRESS:
-                x, y = ball[0], ball[1]
-            elif role == _MARK:
-                x, y = _marked(all_, ball, contact[i], roles, r, first, last, sign, field.length / 2)
-            elif role == _WALL:
-                x, y = _walled(field, ball, roles, r, first, last, sign)
-            elif role == _REDIRECT:
+            first, last, sign = side_of(r, blue, len(roles))
+            side = Side(all_, ball, first, last, sign)
+            me, role, (top, turn), kick = all_[r], roles[r], most, 0.0
+            target, facing = (me.x, me.y), (ball.x, ball.y)
+            if role == Role.PRESS:
+                target = (ball.x, ball.y)
+            elif role == Role.MARK:
+                target = _marked(side, contact[i], roles, r, field.length / 2)
+            elif role == Role.WALL:
+                target = _walled(field, side, roles, r)
+            elif role == Role.REDIRECT:
                 x, y = _coming(me, ball)
                 # There its mouth is to be, not its middle.
-                x, y = x - _MOUTH * cos(me[2]), y - _MOUTH * sin(me[2])
-                look_x, look_y, _ = shot_at(field, all_, me, sign, blue)
+                target = x - _MOUTH * cos(me.heading), y - _MOUTH * sin(me.heading)
+                facing, _ = shot_at(field, side, me)
                 kick = SHOT
-            elif role in (_ATTACK, _PASS):
+            elif role in (Role.ATTACK, Role.PASS):
                 if contact[i, r]:
                     turn = _GENTLE
-                    if role == _PASS:
-                        look_x, look_y, near = passed_to(all_, ball, r, first, last)
+                    if role == Role.PASS:
+                        facing, near = passed_to(side, r)
                     else:
-                        look_x, look_y, near = shot_at(field, all_, me, sign, blue)
+                        facing, near = shot_at(field, side, me)
                         if not near:
-                            x, y, top = look_x, look_y, _CARRYING
-                    off = wrap_angle(atan2(look_y - me[1], look_x - me[0]) - me[2])
+                            target, top = facing, _CARRYING
+                    off = wrap_angle(atan2(facing[1] - me.y, facing[0] - me.x) - me.heading)
                     if near and abs(off) < _AIMED:
-                        kick = (
-                            SHOT if role == _ATTACK else pass_speed(hypot(look_x - ball[0], look_y - ball[1]))
-                        )
-                elif _nearest(all_, ball, first, last, roles) == r:
-                    x, y = _coming(all_[r], ball)
-                elif role == _ATTACK:
+                        kick = SHOT if role == Role.ATTACK else pass_speed(ball, facing)
+                elif nearest_to(side, _LEAD, fetch) == r:
+                    target = _coming(me, ball)
+                elif role == Role.ATTACK:
                     x = sign * (field.length / 2 - field.defense_depth - 0.6)
-                    y = -1.2 if ball[1] > 0.0 else 1.2
-            dx, dy = x - me[0], y - me[1]
-            way = hypot(dx, dy)
-            # As fast as it may be to stop there.
-            speed = min(top, sqrt(2.0 * 0.8 * drive[1] * way), way / drive[3])
-            vx, vy = (speed * dx / way, speed * dy / way) if way > 0.0 else (0.0, 0.0)
-            c, s = cos(me[2]), sin(me[2])
-            command[:] = 0.0
-            command[0], command[1] = c * vx + s * vy, c * vy - s * vx
-            omega = _LOOK * wrap_angle(atan2(look_y - me[1], look_x - me[0]) - me[2])
-            command[2] = min(max(omega, -turn), turn)
-            command[3] = kick
-            command[5] = 1.0
+                    target = (x, -1.2 if ball.y > 0.0 else 1.2)
+            commands[i, r] = 0.0
+            command: Command = commands[i].view(COMMAND)[r, 0]
+            command.vx, command.vy, command.omega = drive_straight(me, target, facing, top, turn, drive)
+            command.kick_speed, command.dribbler = kick, 1.0
 
 
 @compilable
-def pass_speed(way: float) -> float:
-    """Return how fast a pass so far [m] is kicked [m/s]."""
+def pass_speed(ball: Ball, target: Point) -> float:
+    """Return how fast a pass to a place is kicked [m/s]."""
+    way = hypot(target[0] - ball.x, target[1] - ball.y)
     return sqrt(_ARRIVES * _ARRIVES + 2.0 * _ROLLING * way) / _KEPT
 
 
 @compiled
-def _nearest(robots: FloatArray, ball: FloatArray, first: int, last: int, roles: NDArray[np.int64]) -> int:
-    """Return which of the team that fetch the ball is nearest to it."""
+def nearest_to(side: Side, lead: float, able: NDArray[np.bool_]) -> int:
+    """Return who of the team's ``able`` (R,) is nearest to where the ball is in ``lead`` seconds, or -1."""
     best, who = inf, -1
-    for r in range(first, last):
-        # To where the ball is going to be: who has passed it is not to run after it.
-        x, y = ball[0] + _LEAD * ball[2], ball[1] + _LEAD * ball[3]
-        far = hypot(robots[r, 0] - x, robots[r, 1] - y)
-        if roles[r] in (_ATTACK, _PASS) and far < best:
+    # Who has been passed by it is not to run after it.
+    x, y = side.ball.x + lead * side.ball.vx, side.ball.y + lead * side.ball.vy
+    for r in range(side.first, side.last):
+        far = hypot(side.robots[r].x - x, side.robots[r].y - y)
+        if able[r] and far < best:
             best, who = far, r
     return who
 
 
 @compilable
-def _coming(me: FloatArray, ball: FloatArray) -> tuple[float, float]:
+def _coming(me: Robot, ball: Ball) -> Point:
     """Return where to get the ball: on its way, if it comes."""
-    fast = hypot(ball[2], ball[3])
+    fast = hypot(ball.vx, ball.vy)
     along = 0.0
     if fast > 0.3:
-        along = max(((me[0] - ball[0]) * ball[2] + (me[1] - ball[1]) * ball[3]) / fast, _LEAD * fast)
-    return ball[0] + along * ball[2] / max(fast, 0.3), ball[1] + along * ball[3] / max(fast, 0.3)
+        along = max(((me.x - ball.x) * ball.vx + (me.y - ball.y) * ball.vy) / fast, _LEAD * fast)
+    return ball.x + along * ball.vx / max(fast, 0.3), ball.y + along * ball.vy / max(fast, 0.3)
 
 
 @compiled
 def _marked(
-    robots: FloatArray,
-    ball: FloatArray,
-    contact: NDArray[np.bool_],
-    roles: NDArray[np.int64],
-    me: int,
-    first: int,
-    last: int,
-    sign: float,
-    goal_x: float,
-) -> tuple[float, float]:
+    side: Side, contact: NDArray[np.bool_], roles: NDArray[np.int64], me: int, goal_x: float
+) -> Point:
     """Return where a marker stands: beside the one of the others who is its to mark, towards the ball.
 
     Those in the marker's own half, the nearest to its goal first, are each the nearest free marker's, but for
-    who has the ball; a marker that is left over stays where it is. Its team attacks ``sign`` times x, and its
-    goal is at ``-goal_x`` times that.
+    who has the ball; a marker that is left over stays where it is. Its goal is at ``-goal_x`` times the sign.
     """
+    robots, ball, first, last, sign = side
     holder, near = -1, inf
     for r in range(len(robots)):
-        far = hypot(robots[r, 0] - ball[0], robots[r, 1] - ball[1])
+        far = hypot(robots[r].x - ball.x, robots[r].y - ball.y)
         if contact[r] and far < near:
             holder, near = r, far
     taken: NDArray[np.bool_] = np.zeros(len(robots), dtype=np.bool_)
     while True:
         best, threat = inf, -1
         for r in range(len(robots)):
-            far = hypot(sign * robots[r, 0] + goal_x, robots[r, 1])
+            far = hypot(sign * robots[r].x + goal_x, robots[r].y)
             there = not first <= r < last and not taken[r] and r != holder
-            if there and sign * robots[r, 0] < MARK_FROM and far < best:
+            if there and sign * robots[r].x < MARK_FROM and far < best:
                 best, threat = far, r
         best, marker = inf, -1
         for r in range(first, last):
-            if threat >= 0 and roles[r] == _MARK and not taken[r]:
-                far = hypot(robots[r, 0] - robots[threat, 0], robots[r, 1] - robots[threat, 1])
+            if threat >= 0 and roles[r] == Role.MARK and not taken[r]:
+                far = hypot(robots[r].x - robots[threat].x, robots[r].y - robots[threat].y)
                 if far < best:
                     best, marker = far, r
         if marker < 0:
-            return robots[me, 0], robots[me, 1]
+            return robots[me].x, robots[me].y
         if marker == me:
-            dx, dy = ball[0] - robots[threat, 0], ball[1] - robots[threat, 1]
+            dx, dy = ball.x - robots[threat].x, ball.y - robots[threat].y
             share = _BESIDE / max(_BESIDE, hypot(dx, dy))
-            return robots[threat, 0] + share * dx, robots[threat, 1] + share * dy
+            return robots[threat].x + share * dx, robots[threat].y + share * dy
         taken[threat] = taken[marker] = True
 
 
 @compiled
-def _walled(
-    field: FieldGeometry,
-    ball: FloatArray,
-    roles: NDArray[np.int64],
-    me: int,
-    first: int,
-    last: int,
-    sign: float,
-) -> tuple[float, float]:
-    """Return where one of a wall stands, round its own goal; its team attacks ``sign`` times x."""
+def _walled(field: FieldGeometry, side: Side, roles: NDArray[np.int64], me: int) -> Point:
+    """Return where one of a wall stands, round its own goal."""
     size = rank = 0
-    for r in range(first, last):
-        if roles[r] == _WALL:
+    for r in range(side.first, side.last):
+        if roles[r] == Role.WALL:
             rank += r < me
             size += 1
-    x, y = wall_place(field, sign * ball[0], sign * ball[1], rank, size)
-    return sign * x, sign * y
+    x, y = wall_place(field, side.sign * side.ball.x, side.sign * side.ball.y, rank, size)
+    return side.sign * x, side.sign * y
 
 
 @compiled
-def shot_at(
-    field: FieldGeometry, robots: FloatArray, me: FloatArray, sign: float, blue: int
-) -> tuple[float, float, bool]:
+def shot_at(field: FieldGeometry, side: Side, me: Robot) -> tuple[Point, bool]:
     """Return the corner farther from who is nearest to the goal, and whether the attacker is near."""
-    goal_x, post = sign * field.length / 2, field.goal_width / 2
-    first, last = (blue, len(robots)) if sign > 0.0 else (0, blue)
+    goal_x, post = side.sign * field.length / 2, field.goal_width / 2
     best, y = inf, 0.0
-    for r in range(first, last):
-        far = hypot(robots[r, 0] - goal_x, robots[r, 1])
-        if far < best:
-            best, y = far, robots[r, 1]
+    for r in range(len(side.robots)):
+        far = hypot(side.robots[r].x - goal_x, side.robots[r].y)
+        if not side.first <= r < side.last and far < best:
+            best, y = far, side.robots[r].y
     corner = -0.7 * post if y > 0.0 else 0.7 * post
-    return goal_x, corner, hypot(goal_x - me[0], me[1]) < _NEAR
+    return (goal_x, corner), hypot(goal_x - me.x, me.y) < _NEAR
 
 
 @compiled
-def passed_to(
-    robots: FloatArray, ball: FloatArray, me: int, first: int, last: int
-) -> tuple[float, float, bool]:
+def passed_to(side: Side, me: int) -> tuple[Point, bool]:
     """Return the mate whose way from the ball is the freest, and whether it is free."""
+    robots, ball, first, last, _ = side
     best, who = -1.0, -1
     for mate in range(first, last):
         if mate == me:
             continue
-        dx, dy = robots[mate, 0] - ball[0], robots[mate, 1] - ball[1]
+        dx, dy = robots[mate].x - ball.x, robots[mate].y - ball.y
         far = max(hypot(dx, dy), 1e-6)
         free = inf
         for r in range(len(robots)):
             if first <= r < last:
                 continue
-            ox, oy = robots[r, 0] - ball[0], robots[r, 1] - ball[1]
+            ox, oy = robots[r].x - ball.x, robots[r].y - ball.y
             along = min(max((ox * dx + oy * dy) / far, 0.0), far)
             free = min(free, hypot(ox - along * dx / far, oy - along * dy / far))
         if free > best:
             best, who = free, mate
     if who < 0:
-        return ball[0], ball[1], False
-    return robots[who, 0], robots[who, 1], best > _FREE
+        return (ball.x, ball.y), False
+    return (robots[who].x, robots[who].y), best > _FREE

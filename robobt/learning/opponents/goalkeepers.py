@@ -7,16 +7,19 @@ skills; a test compares them with the trees on random frames.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import hypot, inf, isnan, pi
+from enum import IntEnum
+from math import hypot, inf, isnan
 from typing import NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from robobt.learning.opponents.sides import Arenas, see_ball, see_robot
 from robobt.motion.ball_watch import Watch, follow
 from robobt.motion.path_planner import travel_law
 from robobt.motion.pilot import ROBOBULLS_LIMITS, drive_law
 from robobt.motion.scene import BALL_GAP, scene_of, trip_of
+from robobt.sim.records import COMMAND, Command, size
 from robobt.skills.base import FACING, heading_thereabouts
 from robobt.skills.conditions.ball_aimed_at_goal import aimed_at
 from robobt.skills.conditions.ball_at_defense_edge import BallAtDefenseEdge, is_at_edge, is_ours
@@ -30,9 +33,10 @@ from robobt.world.ball_model import DEFAULT_BALL
 from robobt.world.compiled import compiled, numbers_of, record_dtype
 from robobt.world.field import FieldGeometry
 from robobt.world.game import Team
-from robobt.world.geometry import FloatArray, direction, wrap_angle
+from robobt.world.geometry import FloatArray, direction
 from robobt.world.limits import RobotLimits
 from robobt.world.records import (
+    BALL,
     LIMITS,
     MOVER_SIZE,
     ROBOT_SIZE,
@@ -47,8 +51,17 @@ from robobt.world.records import (
 from robobt.world.rules import ALONG, MOUTH_SECTOR, before_mouth
 from robobt.world.state import ROBOT_RADIUS, BallState, Frame, RobotState
 
-AIM, SHOT, FETCH, CLEAR, COVER, HOME = range(6)
-"""Cases of the play, in the order in which their conditions are looked at."""
+
+class Case(IntEnum):
+    """Cases of the play, in the order in which their conditions are looked at."""
+
+    AIM = 0
+    SHOT = 1
+    FETCH = 2
+    CLEAR = 3
+    COVER = 4
+    HOME = 5
+
 
 _BEFORE_GOAL, _STAND_OUT = ReturnToGoal.before_goal, CoverAngle.stand_out
 _EDGE_REST, _REST = BallAtDefenseEdge.rest_speed, BallRestsInDefense.rest_speed
@@ -128,7 +141,7 @@ class Goalkeepers:
     def __init__(
         self, field: FieldGeometry, limits: RobotLimits, period: float, n: int, speed: ArrayLike = 1.0
     ) -> None:
-        self.cases: NDArray[np.int64] = np.full(n, HOME, dtype=np.int64)
+        self.cases: NDArray[np.int64] = np.full(n, Case.HOME, dtype=np.int64)
         # Open play, seen by a team whose only robot is the goalkeeper.
         me = RobotState(0, 0.0, 0.0)
         frame = Frame(0.0, field, BallState(0.0, 0.0), (me,), (), Team.BLUE, period)
@@ -138,7 +151,8 @@ class Goalkeepers:
         self._given = np.tile(self._own, (n, 1))
         self._period = period
         self._ticks = np.zeros(n)
-        self._memory = np.zeros((n, len(_MEMORY.names or ()) + 4))
+        self._memory = np.zeros((n, size(_MEMORY)))
+        self._told = np.zeros((n, size(COMMAND)))
         self.restart(np.arange(n), speed)
 
     def restart(self, which: NDArray[np.int64], speed: ArrayLike | None = None) -> None:
@@ -159,8 +173,7 @@ class Goalkeepers:
         memory = self._memory.view(_MEMORY)[:, 0]
         memory["fetching"][which] = 0.0
         for watch in ("aim", "shot"):
-            for name, value in (("time", -inf), ("speed", 0.0), ("rolling", 0.0)):
-                memory[watch][name][which] = value
+            memory[watch][which] = -inf, 0.0, 0.0
 
     def decide(
         self, robots: FloatArray, balls: FloatArray, contact: NDArray[np.bool_], me: int, commands: FloatArray
@@ -172,16 +185,14 @@ class Goalkeepers:
             balls: (n, 4) x, y, vx, vy [m, m/s].
             contact: (n, R) whether the ball lies in the robot's mouth.
             me: which of the R is the goalkeeper.
-            commands: (n, 6) to be filled, as :meth:`robobt.sim.arenas.Arenas.step` takes them.
+            commands: (n, 6) to be filled, or (n, 7), as :meth:`robobt.sim.arenas.Arenas.step` takes them.
         """
-        self._decide(robots, balls, contact, me, commands)
+        self._decide((robots, balls, contact), me, self._told)
+        commands[:] = self._told[:, : commands.shape[1]]
 
-    def _decide(
-        self, robots: FloatArray, balls: FloatArray, contact: NDArray[np.bool_], me: int, commands: FloatArray
-    ) -> None:
+    def _decide(self, arenas: Arenas, me: int, told: FloatArray) -> None:
         now = self._ticks * self._period
-        arenas = (robots, balls, contact)
-        _decide(self.style, self._setting, self._given, self._memory, now, arenas, me, commands, self.cases)
+        _decide(self.style, self._setting, self._given, self._memory, now, arenas, me, told, self.cases)
         self._ticks += 1.0
 
 
@@ -215,7 +226,7 @@ class FittedGoalkeepers(Goalkeepers):
     ) -> None:
         self._share = delay / period % 1.0
         # What was decided and is not done yet, the oldest first.
-        self._held = np.zeros((int(delay / period) + 2, n, 6))
+        self._held = np.zeros((int(delay / period) + 2, n, size(COMMAND)))
         super().__init__(field, limits, period, n)
         driven = ROBOBULLS_LIMITS.model_copy(update={"acceleration": acceleration, "braking": braking})
         self._given[:] = limits_of(driven)
@@ -233,8 +244,9 @@ class FittedGoalkeepers(Goalkeepers):
     ) -> None:
         """See :meth:`Goalkeepers.decide`."""
         self._held[:-1] = self._held[1:]
-        self._decide(robots, balls, contact, me, self._held[-1])
-        commands[:] = self._share * self._held[0] + (1.0 - self._share) * self._held[1]
+        self._decide((robots, balls, contact), me, self._held[-1])
+        told = self._share * self._held[0] + (1.0 - self._share) * self._held[1]
+        commands[:] = told[:, : commands.shape[1]]
 
 
 @compiled
@@ -244,7 +256,7 @@ def _decide(
     given_: FloatArray,
     memory_: FloatArray,
     times: FloatArray,
-    arenas: tuple[FloatArray, FloatArray, NDArray[np.bool_]],
+    arenas: Arenas,
     me: int,
     commands: FloatArray,
     cases: NDArray[np.int64],
@@ -259,32 +271,33 @@ def _decide(
     for i in range(len(balls)):
         _see(robots[i], contact[i], me, seen, movers, sensed)
         ball, memory, given = scene.ball, memory_.view(_MEMORY)[i, 0], given_.view(LIMITS)[i, 0]
-        ball.x, ball.y, ball.vx, ball.vy = -balls[i, 0], -balls[i, 1], -balls[i, 2], -balls[i, 3]
+        see_ball(balls[i].view(BALL)[0], -1.0, ball)
         setting_[:ROBOT_SIZE] = seen[0]
         case, y = _case(style, setting, all_, sensed, memory)
-        command, slowed, order = commands[i], memory.slowed > 0.0, (0.0, 0.0, 0.0)
-        command[:] = 0.0
-        if case == COVER and not _set_out(style, setting):
-            case = HOME
-        if case in (AIM, SHOT):
+        slowed, order = memory.slowed > 0.0, (0.0, 0.0, 0.0)
+        commands[i] = 0.0
+        command: Command = commands[i].view(COMMAND)[0]
+        if case == Case.COVER and not _set_out(style, setting):
+            case = Case.HOME
+        if case in (Case.AIM, Case.SHOT):
             target, final_speed = (ROBOT_RADIUS - scene.half_length, y), 0.0
             place = blocking_place(trip.me, ball, target, 0.0)
             if style.dives:
-                watch, speed = memory.aim if case == AIM else memory.shot, hypot(ball.vx, ball.vy)
+                watch, speed = memory.aim if case == Case.AIM else memory.shot, hypot(ball.vx, ball.vy)
                 rolling = follow(watch, times[i], speed, _SLIDE, _ROLL, _SHARE)
                 pace = (given.max_speed, given.acceleration, given.braking)
                 final_speed = dive_speed(trip.me, ball, place, rolling, pace, _SLIDE, _ROLL)
-                command[5] = 1.0
+                command.dribbler = 1.0
             facing = direction((trip.me.x, trip.me.y), (ball.x, ball.y))
             gentle = slowed or own.reaction > 0.0
             order = drive_law(trip.me, place, facing, final_speed, own, given, gentle, scene.period)
-        elif case in (COVER, HOME):
-            if case == HOME:
+        elif case in (Case.COVER, Case.HOME):
+            if case == Case.HOME:
                 trip.x, trip.y, trip.heading = _BEFORE_GOAL - scene.half_length, 0.0, 0.0
                 trip.final_speed, trip.ball_gap, trip.avoids_robots = 0.0, BALL_GAP, 1.0
             order = travel_law(trip, scene, every, own, given, slowed, False)
         cases[i] = case
-        command[0], command[1], command[2] = order
+        command.vx, command.vy, command.omega = order
 
 
 @compiled
@@ -300,13 +313,13 @@ def _see(
 
     ``movers`` take what a way in open play depends on.
     """
+    all_, every = robot_records(robots), mover_records(movers)
     for k in range(len(robots)):
         row = 0 if k == me else (k + 1 if k < me else k)
-        seen[row] = -robots[k]
-        seen[row, 2], seen[row, 5] = wrap_angle(robots[k, 2] + pi), robots[k, 5]
+        robot, mover = robot_records(seen)[row], every[row]
+        see_robot(all_[k], -1.0, robot)
         sensed[row] = contact[k]
-        movers[row, :2] = seen[row, :2]
-        movers[row, 2:4] = seen[row, 3:5]
+        mover.x, mover.y, mover.vx, mover.vy = robot.x, robot.y, robot.vx, robot.vy
 
 
 @compiled
@@ -329,19 +342,19 @@ def _case(
         if held:
             aim = aimed_at(robot, ball, field)
             if not isnan(aim):
-                return AIM, aim
+                return Case.AIM, aim
     y = crossing(ball, field, style.min_speed, style.margin)
     if abs(y) < inf and not carried:
-        return SHOT, y
+        return Case.SHOT, y
     speed, fetching = hypot(ball.vx, ball.vy), memory.fetching > 0.0
     at_edge = is_at_edge(ball, field, fetching)
     fetching = at_edge and (fetching or (speed <= _EDGE_REST and is_ours(own_way, nearest)))
     memory.fetching = 1.0 if fetching else 0.0
     if fetching:
-        return FETCH, 0.0
+        return Case.FETCH, 0.0
     if lies_in_area(ball, field) and (speed <= _REST or carries):
-        return CLEAR, 0.0
-    return (COVER if ball.x > style.before_goal - field.length / 2 else HOME), 0.0
+        return Case.CLEAR, 0.0
+    return (Case.COVER if ball.x > style.before_goal - field.length / 2 else Case.HOME), 0.0
 
 
 @compiled

@@ -7,38 +7,66 @@ met (:mod:`robobt.learning.opponents.goalkeepers`).
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from enum import IntEnum
 from functools import partial
-from math import atan2, cos, hypot, sin, sqrt, tan
-from typing import TYPE_CHECKING
+from math import cos, hypot, inf, tan
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-from robobt.learning.opponents.goalkeepers import CLEAR, FETCH, FittedGoalkeepers, Goalkeepers
-from robobt.world.compiled import compiled, numbers_dtype, numbers_of
+from robobt.learning.opponents.goalkeepers import Case, FittedGoalkeepers, Goalkeepers
+from robobt.learning.opponents.sides import Arenas, see_ball, see_robot
+from robobt.learning.opponents.straight import DRIVE, TURN, Drive, drive_of, drive_straight
+from robobt.sim.records import COMMAND, Command, size
+from robobt.world.compiled import compilable, compiled, numbers_dtype, numbers_of, record_dtype
 from robobt.world.field import FieldGeometry
-from robobt.world.geometry import FloatArray, wrap_angle
+from robobt.world.geometry import FloatArray, Point
 from robobt.world.limits import RobotLimits
+from robobt.world.records import BALL, ROBOT_SIZE, Ball, Robot, robot_records
 from robobt.world.rules import in_area
 from robobt.world.state import ROBOT_RADIUS
 
 if TYPE_CHECKING:
     from robobt.shots.keepers.population import Population
 
-KINDS = ("line", "angle", "aim", "rush", "shipped", "fitted")
-"""What a goalkeeper does until a shot comes, onto whose line all of them drive.
 
-``line`` stays level with the ball, ``angle`` between ball and goal; ``aim`` does so too, but while the
-attacker's heading leads into the goal goes where it crosses its line; ``rush`` comes out to a near ball.
-"""
+class Kind(IntEnum):
+    """What a goalkeeper does until a shot comes, onto whose line all of them drive.
 
-_LINE, _ANGLE, _AIM, _RUSH, SHIPPED, FITTED = range(6)
-TRAITS = ("keeper_kind", "keeper_speed", "keeper_out")
-"""What makes a goalkeeper: index of its kind, top speed [m/s], how far before its line it stands [m].
+    ``line`` stays level with the ball, ``angle`` between ball and goal; ``aim`` does so too, but while the
+    attacker's heading leads into the goal goes where it crosses its line; ``rush`` comes out to a near ball.
+    """
 
-The last says nothing of ``shipped`` and ``fitted``, which have places of their own."""
+    LINE = 0
+    ANGLE = 1
+    AIM = 2
+    RUSH = 3
+    SHIPPED = 4
+    FITTED = 5
 
-_FIELD = numbers_dtype(FieldGeometry)
+
+KINDS = tuple(kind.name.lower() for kind in Kind)
+"""The kinds as settings name them."""
+
+
+class Traits(Protocol):
+    """What makes a goalkeeper.
+
+    Attributes:
+        keeper_kind: of :class:`Kind`.
+        keeper_speed: top speed [m/s].
+        keeper_out: how far before its line it stands [m], but for ``shipped`` and ``fitted``.
+    """
+
+    keeper_kind: float
+    keeper_speed: float
+    keeper_out: float
+
+
+_TRAITS, _FIELD = record_dtype(Traits), numbers_dtype(FieldGeometry)
+TRAITS = _TRAITS.names or ()
 _SHOT = 1.0
 """A ball this fast towards the goal is a shot [m/s]."""
 _BESIDE = 0.1
@@ -49,66 +77,69 @@ _FARTHEST = 0.9
 """It comes so far, which is inside the defence area [m]."""
 _REST = 0.1
 """A ball slower than this rests [m/s]."""
-_LOOK, _TURN = 6.0, 6.0
-"""How fast they turn for each radian [1/s], and at most [rad/s]."""
 
 
 class Keepers:
-    """A goalkeeper in each of ``n`` arenas, the second robot there; it defends the goal at +x.
+    """The robot ``index`` of each of ``n`` arenas as a goalkeeper, which minds one opponent alone.
+
+    That is the one nearest to the ball.
 
     Args:
         field: dimensions.
         limits: what the goalkeepers can do.
         period: control period [s].
         n: number of arenas.
+        index: of the robot.
+        blue: how many robots, the first, are blue, whose goal is at -x.
 
     Attributes:
+        index: of the robot.
         kept: (n,) whether the ball rests where it is the goalkeeper's to fetch.
     """
 
-    def __init__(self, field: FieldGeometry, limits: RobotLimits, period: float, n: int) -> None:
+    def __init__(
+        self, field: FieldGeometry, limits: RobotLimits, period: float, n: int, index: int = 1, blue: int = 1
+    ) -> None:
+        self.index = index
         self.kept: NDArray[np.bool_] = np.zeros(n, dtype=np.bool_)
+        self._blue = blue
         self._field = numbers_of(field)
-        self._braking = min(limits.braking, limits.lateral_braking)
-        self._period = period
+        self._drive = drive_of(limits, period)
         self._top = limits.max_speed
         self._traits = np.zeros((n, len(TRAITS)))
         self._shipped = Goalkeepers(field, limits, period, n)
         self._fitted: FittedGoalkeepers | None = None
         self._new_fitted = partial(_real, field, limits, period, n)
-        self._theirs = np.zeros((n, 6))
+        self._theirs = np.zeros((n, size(COMMAND)))
+        # Opponent and goalkeeper, the ball, and who has it, turned round to where its goal is at +x.
+        self._pairs, self._balls = np.zeros((n, 2, ROBOT_SIZE)), np.zeros((n, size(BALL)))
+        self._holds: NDArray[np.bool_] = np.zeros((n, 2), dtype=np.bool_)
 
     def restart(self, which: NDArray[np.int64], traits: FloatArray) -> None:
-        """Begin anew in the arenas ``which``, with goalkeepers of these ``traits`` (m, 3), :data:`TRAITS`."""
+        """Begin anew in the arenas ``which``, with goalkeepers of ``traits`` (m, 3), :class:`Traits`."""
         self._traits[which] = traits
         self.kept[which] = False
-        shipped, fitted = traits[:, 0] == SHIPPED, traits[:, 0] == FITTED
-        self._shipped.restart(which[shipped], traits[shipped, 1] / self._top)
+        kind, speed, _ = traits.T
+        shipped, fitted = kind == Kind.SHIPPED, kind == Kind.FITTED
+        self._shipped.restart(which[shipped], speed[shipped] / self._top)
         if fitted.any():
             self._fitted = self._fitted or self._new_fitted()
-            self._fitted.restart(which[fitted], traits[fitted, 1])
+            self._fitted.restart(which[fitted], speed[fitted])
 
     def decide(
         self, robots: FloatArray, balls: FloatArray, contact: NDArray[np.bool_], commands: FloatArray
     ) -> None:
-        """Decide one control tick; arguments as for :meth:`Goalkeepers.decide`, which this fills likewise."""
-        _decide(
-            self._field,
-            self._braking,
-            self._period,
-            self._traits,
-            robots,
-            balls,
-            contact,
-            commands,
-            self.kept,
-        )
-        for kind, play in ((SHIPPED, self._shipped), (FITTED, self._fitted)):
-            these = self._traits[:, 0] == kind
+        """Decide one control tick: fill its commands among those of all robots (n, R, size(COMMAND))."""
+        arenas, seen = (robots, balls, contact), (self._pairs, self._balls, self._holds)
+        who = (self.index, self._blue)
+        _decide(self._field, self._drive, self._traits, who, arenas, seen, commands, self.kept)
+        kinds = self._traits.view(_TRAITS)["keeper_kind"][:, 0]
+        for kind, play in ((Kind.SHIPPED, self._shipped), (Kind.FITTED, self._fitted)):
+            these = kinds == kind
             if play is not None and these.any():
-                play.decide(robots, balls, contact, 1, self._theirs)
-                commands[these, :6] = self._theirs[these]
-                self.kept[these] |= np.isin(play.cases[these], (FETCH, CLEAR))
+                play.decide(*seen, 1, self._theirs)
+                commands[these, self.index] = self._theirs[these]
+                self.kept[these] |= np.isin(play.cases[these], (Case.FETCH, Case.CLEAR))
 
 
 def _real(field: FieldGeometry, limits: RobotLimits, period: float, n: int) -> FittedGoalkeepers:
@@ -130,72 +161,81 @@ def real_population() -> Population:
 @compiled
 def _decide(
     field_: FloatArray,
-    braking: float,
-    period: float,
+    drive_: FloatArray,
     traits: FloatArray,
-    robots: FloatArray,
-    balls: FloatArray,
-    contact: NDArray[np.bool_],
+    who: tuple[int, int],
+    arenas: Arenas,
+    seen: Arenas,
     commands: FloatArray,
     kept: NDArray[np.bool_],
 ) -> None:
     field: FieldGeometry = field_.view(_FIELD)[0]
-    goal_x, half_goal = field.length / 2, field.goal_width / 2
+    drive: Drive = drive_.view(DRIVE)[0]
+    (index, blue), (robots, balls, contact), (pairs, turned, holds) = who, arenas, seen
+    # To where its goal is at +x.
+    sign = -1.0 if index < blue else 1.0
     for i in range(len(balls)):
-        me, ball = robots[i, 1], balls[i]
-        near = in_area(ball[0], ball[1], goal_x, field.defense_depth, field.defense_width, ROBOT_RADIUS)
-        kept[i] = near and not contact[i, 0] and hypot(ball[2], ball[3]) < _REST
-        x, y = _place(int(traits[i, 0]), traits[i, 2], robots[i, 0], me, ball, goal_x, half_goal)
-        dx, dy = x - me[0], y - me[1]
-        way = hypot(dx, dy)
-        # As fast as it may be to stop there.
-        speed = min(traits[i, 1], sqrt(2.0 * 0.8 * braking * way), way / period)
-        vx, vy = (speed * dx / way, speed * dy / way) if way > 0.0 else (0.0, 0.0)
-        c, s = cos(me[2]), sin(me[2])
-        command = commands[i]
-        command[:] = 0.0
-        command[0], command[1] = c * vx + s * vy, c * vy - s * vx
-        turn = _LOOK * wrap_angle(atan2(ball[1] - me[1], ball[0] - me[0]) - me[2])
-        command[2] = min(max(turn, -_TURN), _TURN)
-        command[5] = 1.0
+        all_, pair, ball = robot_records(robots[i]), robot_records(pairs[i]), turned[i].view(BALL)[0]
+        nearest = _nearest(all_, balls[i].view(BALL)[0], index, blue)
+        see_ball(balls[i].view(BALL)[0], sign, ball)
+        for row in range(2):
+            one = index if row else nearest
+            see_robot(all_[one], sign, pair[row])
+            holds[i, row] = contact[i, one]
+        me, keeper = pair[1], traits[i].view(_TRAITS)[0]
+        near = in_area(
+            ball.x, ball.y, field.length / 2, field.defense_depth, field.defense_width, ROBOT_RADIUS
+        )
+        kept[i] = near and not holds[i, 0] and hypot(ball.vx, ball.vy) < _REST
+        place = _place(keeper, pair[0], me, ball, field.length / 2, field.goal_width / 2)
+        commands[i, index] = 0.0
+        command: Command = commands[i].view(COMMAND)[index, 0]
+        command.vx, command.vy, command.omega = drive_straight(
+            me, place, (ball.x, ball.y), keeper.keeper_speed, TURN, drive
+        )
+        command.dribbler = 1.0
+
+
+@compilable
+def _nearest(robots: Sequence[Robot], ball: Ball, index: int, blue: int) -> int:
+    """Return which opponent of the robot ``index`` is nearest to the ball."""
+    best, nearest = inf, 0
+    for r in range(len(robots)):
+        far = hypot(robots[r].x - ball.x, robots[r].y - ball.y)
+        if (r < blue) != (index < blue) and far < best:
+            best, nearest = far, r
+    return nearest
 
 
 @compiled
-def _place(
-    kind: int,
-    out: float,
-    attacker: FloatArray,
-    me: FloatArray,
-    ball: FloatArray,
-    goal_x: float,
-    half_goal: float,
-) -> tuple[float, float]:
+def _place(keeper: Traits, attacker: Robot, me: Robot, ball: Ball, goal_x: float, half_goal: float) -> Point:
     """Return where a goalkeeper drives now."""
+    kind, out = int(keeper.keeper_kind), keeper.keeper_out
     line = goal_x - out
-    if ball[2] > _SHOT and not _pointed_by(attacker, ball):
-        crosses = ball[1] + (goal_x - ball[0]) * ball[3] / ball[2]
-        if abs(crosses) < half_goal + _BESIDE and ball[0] < goal_x:
+    if ball.vx > _SHOT and not _pointed_by(attacker, ball):
+        crosses = ball.y + (goal_x - ball.x) * ball.vy / ball.vx
+        if abs(crosses) < half_goal + _BESIDE and ball.x < goal_x:
             # The nearest point on the shot's line, not behind the goal's.
-            fast = hypot(ball[2], ball[3])
-            ux, uy = ball[2] / fast, ball[3] / fast
-            along = max((me[0] - ball[0]) * ux + (me[1] - ball[1]) * uy, 0.0)
-            x = min(ball[0] + along * ux, goal_x - ROBOT_RADIUS)
-            return x, ball[1] + (x - ball[0]) * uy / ux
-    if kind == _LINE:
-        return line, min(max(ball[1], -half_goal), half_goal)
-    if kind == _AIM and cos(attacker[2]) > 0.1:
-        slope = tan(attacker[2])
-        if abs(ball[1] + (goal_x - ball[0]) * slope) < half_goal:
-            return line, ball[1] + (line - ball[0]) * slope
-    dx, dy = ball[0] - goal_x, ball[1]
+            fast = hypot(ball.vx, ball.vy)
+            ux, uy = ball.vx / fast, ball.vy / fast
+            along = max((me.x - ball.x) * ux + (me.y - ball.y) * uy, 0.0)
+            x = min(ball.x + along * ux, goal_x - ROBOT_RADIUS)
+            return x, ball.y + (x - ball.x) * uy / ux
+    if kind == Kind.LINE:
+        return line, min(max(ball.y, -half_goal), half_goal)
+    if kind == Kind.AIM and cos(attacker.heading) > 0.1:
+        slope = tan(attacker.heading)
+        if abs(ball.y + (goal_x - ball.x) * slope) < half_goal:
+            return line, ball.y + (line - ball.x) * slope
+    dx, dy = ball.x - goal_x, ball.y
     far = max(hypot(dx, dy), 1e-6)
-    if kind == _RUSH:
+    if kind == Kind.RUSH:
         out += max(min(_FARTHEST, far - 1.0) - out, 0.0) if far < _NEAR else 0.0
     return goal_x + min(out * dx / far, -ROBOT_RADIUS), out * dy / far
 
 
 @compiled
-def _pointed_by(attacker: FloatArray, ball: FloatArray) -> bool:
+def _pointed_by(attacker: Robot, ball: Ball) -> bool:
     """Return whether the attacker still drives the ball: nothing has been shot yet."""
-    near = hypot(ball[0] - attacker[0], ball[1] - attacker[1]) < 2.0 * ROBOT_RADIUS
-    return near and hypot(ball[2] - attacker[3], ball[3] - attacker[4]) < _SHOT
+    near = hypot(ball.x - attacker.x, ball.y - attacker.y) < 2.0 * ROBOT_RADIUS
+    return near and hypot(ball.vx - attacker.vx, ball.vy - attacker.vy) < _SHOT

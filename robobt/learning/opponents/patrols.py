@@ -2,24 +2,44 @@
 
 from __future__ import annotations
 
-from math import atan2, cos, hypot, sin, sqrt
+from math import hypot
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-from robobt.world.compiled import compiled
-from robobt.world.geometry import FloatArray, wrap_angle
+from robobt.learning.opponents.straight import DRIVE, TURN, Drive, drive_of, drive_straight
+from robobt.sim.records import COMMAND, Command
+from robobt.world.compiled import compilable, compiled, record_dtype
+from robobt.world.geometry import FloatArray, Point
 from robobt.world.limits import RobotLimits
-
-TRAITS = ("from_x", "from_y", "to_x", "to_y", "speed")
-"""What makes a patrol: its two ends [m] and its top speed [m/s]; it drives to the second end first."""
+from robobt.world.records import Robot, robot_records
 
 _THERE = 0.1
 """How near an end it turns round [m]."""
 _STUCK, _PATIENCE = 0.1, 10.0
 """A patrol slower than this [m/s] for so many ticks is held up, and turns round."""
-_LOOK, _TURN = 6.0, 6.0
-"""How fast it turns into its way for each radian [1/s], and at most [rad/s]."""
+
+
+class Patrol(Protocol):
+    """What makes a patrol: its two ends [m] and its top speed [m/s]; it drives to the second end first."""
+
+    from_x: float
+    from_y: float
+    to_x: float
+    to_y: float
+    speed: float
+
+
+class _Memory(Protocol):
+    """Whether it is on its way to the second end, and for how many ticks it has been stuck."""
+
+    there: float
+    stuck: float
+
+
+_PATROL, _MEMORY = record_dtype(Patrol), record_dtype(_Memory)
+TRAITS = _PATROL.names or ()
 
 
 class Patrols:
@@ -33,53 +53,44 @@ class Patrols:
     """
 
     def __init__(self, limits: RobotLimits, period: float, n: int, count: int) -> None:
-        self._braking = min(limits.braking, limits.lateral_braking)
-        self._period = period
+        self._drive = drive_of(limits, period, _STUCK)
         self._traits = np.zeros((n, count, len(TRAITS)))
-        # Which end is driven to, 1 for the second, and for how long it has been stuck.
         self._memory = np.zeros((n, count, 2))
 
     def restart(self, which: NDArray[np.int64], traits: FloatArray) -> None:
-        """Begin anew in the arenas ``which``; ``traits`` (m, count, 5) are :data:`TRAITS`."""
+        """Begin anew in the arenas ``which``; ``traits`` (m, count, 5) are of :class:`Patrol`."""
         self._traits[which] = traits
         self._memory[which] = 1.0, 0.0
 
     def decide(self, robots: FloatArray, commands: FloatArray) -> None:
-        """Decide one control tick.
-
-        Args:
-            robots: (n, R, 6) of all robots.
-            commands: (n, count, >= 6) to be filled.
-        """
-        first = robots.shape[1] - self._traits.shape[1]
-        _decide(self._braking, self._period, self._traits, self._memory, robots[:, first:], commands)
+        """Decide one control tick: fill their ``commands`` (n, R, size(COMMAND)), given all ``robots``."""
+        _decide(self._drive, self._traits, self._memory, robots, commands)
 
 
 @compiled
 def _decide(
-    braking: float,
-    period: float,
-    traits: FloatArray,
-    memory: FloatArray,
-    robots: FloatArray,
-    commands: FloatArray,
+    drive_: FloatArray, traits: FloatArray, memory: FloatArray, robots: FloatArray, commands: FloatArray
 ) -> None:
-    for i in range(traits.shape[0]):
-        for k in range(traits.shape[1]):
-            me, patrol, mind, command = robots[i, k], traits[i, k], memory[i, k], commands[i, k]
-            mind[1] = mind[1] + 1.0 if hypot(me[3], me[4]) < _STUCK else 0.0
-            end = 2 if mind[0] > 0.0 else 0
-            dx, dy = patrol[end] - me[0], patrol[end + 1] - me[1]
-            way = hypot(dx, dy)
-            if way < _THERE or mind[1] > _PATIENCE:
-                mind[0], mind[1] = 1.0 - mind[0], 0.0
-                end = 2 - end
-                dx, dy = patrol[end] - me[0], patrol[end + 1] - me[1]
-                way = hypot(dx, dy)
-            # As fast as it may be to stop there, and never slower than it takes to get there.
-            speed = min(patrol[4], max(sqrt(2.0 * 0.8 * braking * way), _STUCK), way / period)
-            vx, vy = (speed * dx / way, speed * dy / way) if way > 0.0 else (0.0, 0.0)
-            c, s = cos(me[2]), sin(me[2])
-            command[:] = 0.0
-            command[0], command[1] = c * vx + s * vy, c * vy - s * vx
-            command[2] = min(max(_LOOK * wrap_angle(atan2(dy, dx) - me[2]), -_TURN), _TURN)
+    drive: Drive = drive_.view(DRIVE)[0]
+    count = traits.shape[1]
+    first = robots.shape[1] - count
+    for i in range(len(traits)):
+        for k in range(count):
+            me: Robot = robot_records(robots[i])[first + k]
+            command: Command = commands[i].view(COMMAND)[first + k, 0]
+            patrol: Patrol = traits[i].view(_PATROL)[k, 0]
+            mind: _Memory = memory[i].view(_MEMORY)[k, 0]
+            mind.stuck = mind.stuck + 1.0 if hypot(me.vx, me.vy) < _STUCK else 0.0
+            x, y = _end(patrol, mind)
+            if hypot(x - me.x, y - me.y) < _THERE or mind.stuck > _PATIENCE:
+                mind.there, mind.stuck = 1.0 - mind.there, 0.0
+                x, y = _end(patrol, mind)
+            commands[i, first + k] = 0.0
+            command.vx, command.vy, command.omega = drive_straight(
+                me, (x, y), (x, y), patrol.speed, TURN, drive
+            )
+
+
+@compilable
+def _end(patrol: Patrol, mind: _Memory) -> Point:
+    return (patrol.to_x, patrol.to_y) if mind.there > 0.0 else (patrol.from_x, patrol.from_y)

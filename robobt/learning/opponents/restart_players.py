@@ -3,18 +3,29 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import atan2, cos, hypot, inf, sin, sqrt
+from math import atan2, cos, hypot, sin, sqrt
 from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from robobt.learning.opponents.challengers import CHALLENGE
-from robobt.learning.opponents.field_players import PLAYERS, SHOT, pass_speed, passed_to, shot_at
+from robobt.learning.opponents.field_players import (
+    PLAYERS,
+    SHOT,
+    nearest_to,
+    pass_speed,
+    passed_to,
+    shot_at,
+)
+from robobt.learning.opponents.sides import Side, side_of
+from robobt.learning.opponents.straight import stopping_speed, turning
+from robobt.sim.records import COMMAND, Command
 from robobt.world.compiled import compilable, compiled, numbers_dtype, numbers_of, record_dtype
 from robobt.world.field import FieldGeometry
 from robobt.world.geometry import FloatArray, wrap_angle
 from robobt.world.limits import RobotLimits
+from robobt.world.records import BALL, Ball, Robot, robot_records
 from robobt.world.rules import STOP_DISTANCE
 from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS
 
@@ -42,8 +53,6 @@ class RestartState(Protocol):
 
 RESTART = record_dtype(RestartState)
 
-_NOBODY, _KEEPER = -1, -2
-_STILL, _PASS = PLAYERS.index("still"), PLAYERS.index("pass")
 _FIELD = numbers_dtype(FieldGeometry)
 _OFF = STOP_DISTANCE + ROBOT_RADIUS + 0.1
 """From the centre to a ball that others take [m]."""
@@ -55,8 +64,8 @@ _STRAIGHT, _AIMED = 0.03, 0.06
 """How far off the line through ball and target it may be then [m, rad]."""
 _GENTLY = 0.5
 """How fast it drives at the ball [m/s]."""
-_LOOK = 6.0
-"""How fast it turns for each radian [1/s]."""
+_HURRY = 6.0
+"""How fast it drives for each metre that is left [1/s]."""
 
 
 class RestartPlayers:
@@ -79,15 +88,16 @@ class RestartPlayers:
     ) -> None:
         self._field = numbers_of(field)
         braking = min(limits.braking, limits.lateral_braking)
-        self._drive = np.array([min(speed, limits.max_speed), braking, limits.max_turn])
-        kinds = {name: k for k, name in enumerate((*PLAYERS, CHALLENGE))} | {"goalkeeper": _KEEPER}
-        self._roles = np.array([kinds.get(role, _NOBODY) for role in roles], dtype=np.int64)
+        self._drive = min(speed, limits.max_speed), limits.max_turn, braking
+        scripted = np.array([role in {*PLAYERS, CHALLENGE, "goalkeeper"} for role in roles])
+        still, keeps, passes = np.array(roles) == [["still"], ["goalkeeper"], ["pass"]]
+        self._roles = (scripted & ~still, ~(still | keeps), passes)
         self._blue = blue
 
     def decide(
         self, restarts: FloatArray, robots: FloatArray, balls: FloatArray, commands: FloatArray
     ) -> None:
-        """Change these robots' commands (n, R, >= 6) for one tick.
+        """Change these robots' commands (n, R, size(COMMAND)) for one tick.
 
         Args:
             restarts: (n, size(RESTART)) of :class:`RestartState`.
@@ -95,96 +105,85 @@ class RestartPlayers:
             balls: (n, 4) states.
             commands: what they would do in play.
         """
-        _decide(self._field, self._drive, self._roles, self._blue, restarts, robots, balls, commands)
+        arenas = (restarts, robots, balls)
+        _decide(self._field, self._drive, self._roles, self._blue, arenas, commands)
 
 
 @compiled
 def _decide(
     field_: FloatArray,
-    drive: FloatArray,
-    roles: NDArray[np.int64],
+    drive: tuple[float, float, float],
+    roles: tuple[NDArray[np.bool_], NDArray[np.bool_], NDArray[np.bool_]],
     blue: int,
-    restarts: FloatArray,
-    robots: FloatArray,
-    balls: FloatArray,
+    arenas: tuple[FloatArray, FloatArray, FloatArray],
     commands: FloatArray,
 ) -> None:
     field: FieldGeometry = field_.view(_FIELD)[0]
+    (scripted, able, passes), (restarts, robots, balls) = roles, arenas
     for i in range(len(balls)):
         restart: RestartState = restarts.view(RESTART)[i, 0]
-        team, barred, ball = restart.team, int(restart.taker), balls[i]
+        team, barred = restart.team, int(restart.taker)
         if team == 0.0 and barred < 0:
             continue
-        first, last = (0, blue) if team > 0.0 else (blue, len(roles))
-        taker = _nearest(robots[i], ball, roles, first, last) if team != 0.0 else -1
-        for r in range(len(roles)):
-            if roles[r] in (_NOBODY, _STILL) or (team == 0.0 and r != barred):
+        all_, ball = robot_records(robots[i]), balls[i].view(BALL)[0]
+        first, last, sign = side_of(0 if team > 0.0 else blue, blue, len(scripted))
+        side = Side(all_, ball, first, last, sign)
+        taker = nearest_to(side, 0.0, able) if team != 0.0 else -1
+        for r in range(len(scripted)):
+            if not scripted[r] or (team == 0.0 and r != barred):
                 continue
+            command: Command = commands[i].view(COMMAND)[r, 0]
             if r == taker:
-                _take(field, drive, robots[i], ball, roles[r], r, first, last, blue, commands[i, r])
+                commands[i, r] = 0.0
+                _take(field, side, r, passes[r], drive, command)
             else:
-                keep = _ASIDE if team == 0.0 else _OFF
-                _keep_off(drive, robots[i, r], ball, keep, commands[i, r])
+                _keep_off(all_[r], ball, _ASIDE if team == 0.0 else _OFF, drive, command)
 
 
 @compilable
-def _nearest(robots: FloatArray, ball: FloatArray, roles: NDArray[np.int64], first: int, last: int) -> int:
-    best, who = inf, -1
-    for r in range(first, last):
-        far = hypot(robots[r, 0] - ball[0], robots[r, 1] - ball[1])
-        if roles[r] not in (_KEEPER, _STILL) and far < best:
-            best, who = far, r
-    return who
-
-
-@compilable
-def _keep_off(drive: FloatArray, me: FloatArray, ball: FloatArray, keep: float, command: FloatArray) -> None:
+def _keep_off(
+    me: Robot, ball: Ball, keep: float, drive: tuple[float, float, float], command: Command
+) -> None:
     """Take from a command what would bring the robot nearer to the ball than ``keep`` [m]."""
-    dx, dy = me[0] - ball[0], me[1] - ball[1]
+    _, _, braking = drive
+    dx, dy = me.x - ball.x, me.y - ball.y
     far = max(hypot(dx, dy), 1e-6)
-    c, s = cos(me[2]), sin(me[2])
+    c, s = cos(me.heading), sin(me.heading)
     # The way out in its own frame.
     ux, uy = (c * dx + s * dy) / far, (c * dy - s * dx) / far
     room = far - keep
-    slowest = _GENTLY if room < 0.0 else -sqrt(drive[1] * room)
-    short = slowest - (command[0] * ux + command[1] * uy)
+    slowest = _GENTLY if room < 0.0 else -sqrt(braking * room)
+    short = slowest - (command.vx * ux + command.vy * uy)
     if short > 0.0:
-        command[0] += short * ux
-        command[1] += short * uy
+        command.vx += short * ux
+        command.vy += short * uy
 
 
 @compilable
 def _take(
     field: FieldGeometry,
-    drive: FloatArray,
-    robots: FloatArray,
-    ball: FloatArray,
-    role: int,
+    side: Side,
     me_: int,
-    first: int,
-    last: int,
-    blue: int,
-    command: FloatArray,
+    passes: bool,
+    drive: tuple[float, float, float],
+    command: Command,
 ) -> None:
-    me, sign = robots[me_], 1.0 if first == 0 else -1.0
-    kick = SHOT
-    x, y, _ = shot_at(field, robots, me, sign, blue)
-    if role == _PASS:
-        mate_x, mate_y, free = passed_to(robots, ball, me_, first, last)
+    me, ball, kick, (top, turn, braking) = side.robots[me_], side.ball, SHOT, drive
+    target, _ = shot_at(field, side, me)
+    if passes:
+        mate, free = passed_to(side, me_)
         if free:
-            x, y = mate_x, mate_y
-            kick = pass_speed(hypot(x - ball[0], y - ball[1]))
-    far = hypot(x - ball[0], y - ball[1])
-    ux, uy = (x - ball[0]) / far, (y - ball[1]) / far
-    dx, dy = me[0] - ball[0], me[1] - ball[1]
+            target, kick = mate, pass_speed(ball, mate)
+    far = hypot(target[0] - ball.x, target[1] - ball.y)
+    ux, uy = (target[0] - ball.x) / far, (target[1] - ball.y) / far
+    dx, dy = me.x - ball.x, me.y - ball.y
     along, aside = dx * ux + dy * uy, dy * ux - dx * uy
-    off = wrap_angle(atan2(uy, ux) - me[2])
+    off = wrap_angle(atan2(uy, ux) - me.heading)
     # Along the line and beside it, how far from the ball it drives.
-    to_along, to_aside, top = -_BEHIND, 0.0, drive[0]
-    command[:] = 0.0
+    to_along, to_aside = -_BEHIND, 0.0
     if along < 0.0 and abs(aside) < _STRAIGHT and abs(off) < _AIMED:
         to_along, top = 0.0, _GENTLY
-        command[3], command[4] = kick, 1.0
+        command.kick_speed, command.on_contact = kick, 1.0
     elif along > -_ASIDE:
         # Not behind it yet: away from it first, then past it.
         to_aside = _ROUND if aside > 0.0 else -_ROUND
@@ -192,10 +191,11 @@ def _take(
             to_along = along
     way_x = (to_along - along) * ux - (to_aside - aside) * uy
     way_y = (to_along - along) * uy + (to_aside - aside) * ux
+    # The velocity is rounded otherwise than in drive_straight, with which policies were trained.
     way = hypot(way_x, way_y)
-    speed = min(top, sqrt(1.6 * drive[1] * way), _LOOK * way)
+    speed = min(top, stopping_speed(way, braking), _HURRY * way)
     if way > 0.0:
-        c, s = cos(me[2]), sin(me[2])
-        command[0] = speed * (c * way_x + s * way_y) / way
-        command[1] = speed * (c * way_y - s * way_x) / way
-    command[2] = min(max(_LOOK * off, -drive[2]), drive[2])
+        c, s = cos(me.heading), sin(me.heading)
+        command.vx = speed * (c * way_x + s * way_y) / way
+        command.vy = speed * (c * way_y - s * way_x) / way
+    command.omega = turning(off, turn)

@@ -11,6 +11,7 @@ from robobt.learning.envs import GoToBallAmongRobotsSettings, GoToBallTask, run_
 from robobt.learning.envs.scripted import freest_way, straight_drive_among
 from robobt.learning.opponents.patrols import TRAITS, Patrols
 from robobt.learning.training.teachers import playing, skill
+from robobt.sim.records import COMMAND, size
 from robobt.world import BallState, Frame, RobotState
 from robobt.world.avoiding import (
     AHEAD,
@@ -110,11 +111,11 @@ def test_a_patrol_goes_to_and_fro_and_turns_round_where_it_is_held_up() -> None:
     assert min(xs[60:]) == pytest.approx(0.0, abs=0.15)
     patrols = Patrols(RobotLimits(), 0.03, 1, 1)
     patrols.restart(np.array([0]), np.array([[[0.0, 0.0, 2.0, 0.0, 1.0]]]))
-    commands, held = np.zeros((1, 1, 6)), np.array([[[9.0] * 6, [1.0, 0, 0, 0, 0, 0]]])
+    commands, held = np.zeros((1, 2, size(COMMAND))), np.array([[[9.0] * 6, [1.0, 0, 0, 0, 0, 0]]])
     ahead = []
     for _ in range(14):
         patrols.decide(held, commands)
-        ahead.append(commands[0, 0, 0])
+        ahead.append(commands.view(COMMAND)["vx"][0, 1, 0])
     assert ahead[0] == pytest.approx(1.0)
     assert ahead[-1] == pytest.approx(-1.0)
 

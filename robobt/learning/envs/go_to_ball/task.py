@@ -158,7 +158,7 @@ class GoToBallTask(ArenaTask):
     def oppose(self, commands: FloatArray) -> None:
         """See :meth:`ArenaTask.oppose`."""
         if self.robots > 1:
-            self._patrols.decide(self.arenas.robots, commands[:, 1:])
+            self._patrols.decide(self.arenas.robots, commands)
 
     def _judge(self, actions: FloatArray, rewards: FloatArray, ends: Ends) -> bool:
         return _judge(self._judged_by, actions, after(self.arenas), self._ledger(rewards, ends))

@@ -9,7 +9,7 @@ import numpy as np
 from robobt.learning.envs.score_on_goalkeeper.settings import KeeperSettings, ScoreOnGoalkeeperSettings
 from robobt.learning.envs.starts import BALL_COLUMNS, ROBOT_COLUMNS, parts_of, velocities
 from robobt.learning.envs.task import FloatArray
-from robobt.learning.opponents.keepers import FITTED, KINDS, TRAITS, real_population
+from robobt.learning.opponents.keepers import KINDS, TRAITS, Kind, real_population
 from robobt.world.geometry import wrap_angles
 from robobt.world.state import BALL_RADIUS
 
@@ -72,7 +72,7 @@ def keeper_traits(keepers: KeeperSettings, rng: np.random.Generator, count: int)
     keeper["keeper_speed"] = rng.uniform(*keepers.speed, count)
     keeper["keeper_out"] = rng.uniform(*keepers.out, count)
     if "fitted" in keepers.kinds:
-        fitted, real = keeper["keeper_kind"] == FITTED, real_population()
+        fitted, real = keeper["keeper_kind"] == Kind.FITTED, real_population()
         speeds = real.max_speed * np.exp(real.spread * rng.standard_normal(count))
         keeper["keeper_speed"][fitted] = speeds[fitted]
     return keeper.view(np.float64).reshape(count, -1)

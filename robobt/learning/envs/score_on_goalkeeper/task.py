@@ -107,7 +107,7 @@ class ScoreOnGoalkeeperTask(ArenaTask):
     def oppose(self, commands: FloatArray) -> None:
         """See :meth:`ArenaTask.oppose`."""
         arenas = self.arenas
-        self._keepers.decide(arenas.robots, arenas.balls, arenas.contact, commands[:, _KEEPER])
+        self._keepers.decide(arenas.robots, arenas.balls, arenas.contact, commands)
 
     def _judge(self, actions: FloatArray, rewards: FloatArray, ends: Ends) -> bool:  # noqa: ARG002
         return _judge(self._judged_by, self._keepers.kept, after(self.arenas), self._ledger(rewards, ends))

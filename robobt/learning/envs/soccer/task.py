@@ -19,10 +19,9 @@ from robobt.learning.envs.starts import split
 from robobt.learning.envs.task import Ends, FloatArray, IntArray, StepResult
 from robobt.learning.opponents.challengers import Challengers
 from robobt.learning.opponents.field_players import FieldPlayers
-from robobt.learning.opponents.keepers import TRAITS
+from robobt.learning.opponents.keepers import TRAITS, Keepers
 from robobt.learning.opponents.plays import PlayedRobots
 from robobt.learning.opponents.restart_players import RestartPlayers
-from robobt.learning.opponents.team_keeper import TeamKeeper
 from robobt.sim.records import RecordArray, size
 from robobt.world.game import GameState
 from robobt.world.team_view import AWAY, team_view, team_view_rows
@@ -141,7 +140,7 @@ class SoccerTask(ArenaTask):
             settings.field, limits, period, n, settings.roles, self.blue, settings.player_speed
         )
         self._keepers = [
-            TeamKeeper(settings.field, limits, period, n, index, self.blue)
+            Keepers(settings.field, limits, period, n, index, self.blue)
             for index, role in enumerate(settings.roles)
             if role == GOALKEEPER
         ]
