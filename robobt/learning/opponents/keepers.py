@@ -51,7 +51,7 @@ KINDS = tuple(kind.name.lower() for kind in Kind)
 """The kinds as settings name them."""
 
 
-class Traits(Protocol):
+class Keeper(Protocol):
     """What makes a goalkeeper.
 
     Attributes:
@@ -65,8 +65,8 @@ class Traits(Protocol):
     keeper_out: float
 
 
-_TRAITS, _FIELD = record_dtype(Traits), numbers_dtype(FieldGeometry)
-TRAITS = _TRAITS.names or ()
+KEEPER, _FIELD = record_dtype(Keeper), numbers_dtype(FieldGeometry)
+TRAITS = KEEPER.names or ()
 _SHOT = 1.0
 """A ball this fast towards the goal is a shot [m/s]."""
 _BESIDE = 0.1
@@ -116,7 +116,7 @@ class Keepers:
         self._holds: NDArray[np.bool_] = np.zeros((n, 2), dtype=np.bool_)
 
     def restart(self, which: NDArray[np.int64], traits: FloatArray) -> None:
-        """Begin anew in the arenas ``which``, with goalkeepers of ``traits`` (m, 3), :class:`Traits`."""
+        """Begin anew in the arenas ``which``, with goalkeepers of ``traits`` (m, 3), :class:`Keeper`."""
         self._traits[which] = traits
         self.kept[which] = False
         kind, speed, _ = traits.T
@@ -133,7 +133,7 @@ class Keepers:
         arenas, seen = (robots, balls, contact), (self._pairs, self._balls, self._holds)
         who = (self.index, self._blue)
         _decide(self._field, self._drive, self._traits, who, arenas, seen, commands, self.kept)
-        kinds = self._traits.view(_TRAITS)["keeper_kind"][:, 0]
+        kinds = self._traits.view(KEEPER)["keeper_kind"][:, 0]
         for kind, play in ((Kind.SHIPPED, self._shipped), (Kind.FITTED, self._fitted)):
             these = kinds == kind
             if play is not None and these.any():
@@ -182,7 +182,7 @@ def _decide(
             one = index if row else nearest
             see_robot(all_[one], sign, pair[row])
             holds[i, row] = contact[i, one]
-        me, keeper = pair[1], traits[i].view(_TRAITS)[0]
+        me, keeper = pair[1], traits[i].view(KEEPER)[0]
         near = in_area(
             ball.x, ball.y, field.length / 2, field.defense_depth, field.defense_width, ROBOT_RADIUS
         )
@@ -208,7 +208,7 @@ def _nearest(robots: Sequence[Robot], ball: Ball, index: int, blue: int) -> int:
 
 
 @compiled
-def _place(keeper: Traits, attacker: Robot, me: Robot, ball: Ball, goal_x: float, half_goal: float) -> Point:
+def _place(keeper: Keeper, attacker: Robot, me: Robot, ball: Ball, goal_x: float, half_goal: float) -> Point:
     """Return where a goalkeeper drives now."""
     kind, out = int(keeper.keeper_kind), keeper.keeper_out
     line = goal_x - out

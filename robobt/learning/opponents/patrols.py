@@ -38,8 +38,8 @@ class _Memory(Protocol):
     stuck: float
 
 
-_PATROL, _MEMORY = record_dtype(Patrol), record_dtype(_Memory)
-TRAITS = _PATROL.names or ()
+PATROL, _MEMORY = record_dtype(Patrol), record_dtype(_Memory)
+TRAITS = PATROL.names or ()
 
 
 class Patrols:
@@ -78,7 +78,7 @@ def _decide(
         for k in range(count):
             me: Robot = robot_records(robots[i])[first + k]
             command: Command = commands[i].view(COMMAND)[first + k, 0]
-            patrol: Patrol = traits[i].view(_PATROL)[k, 0]
+            patrol: Patrol = traits[i].view(PATROL)[k, 0]
             mind: _Memory = memory[i].view(_MEMORY)[k, 0]
             mind.stuck = mind.stuck + 1.0 if hypot(me.vx, me.vy) < _STUCK else 0.0
             x, y = _end(patrol, mind)

@@ -14,12 +14,9 @@ from robobt.learning.envs.starts import (
     velocities,
 )
 from robobt.learning.envs.task import FloatArray
-from robobt.learning.opponents.patrols import TRAITS
+from robobt.learning.opponents.patrols import PATROL, TRAITS
 from robobt.sim.records import RecordArray
 from robobt.world.state import ROBOT_RADIUS
-
-PATROL = np.dtype([(name, np.float64) for name in TRAITS])
-"""What makes a patrol, by name."""
 
 
 def go_to_ball_starts(settings: GoToBallSettings, rng: np.random.Generator, count: int) -> FloatArray:

@@ -9,15 +9,12 @@ import numpy as np
 from robobt.learning.envs.score_on_goalkeeper.settings import KeeperSettings, ScoreOnGoalkeeperSettings
 from robobt.learning.envs.starts import BALL_COLUMNS, ROBOT_COLUMNS, parts_of, velocities
 from robobt.learning.envs.task import FloatArray
-from robobt.learning.opponents.keepers import KINDS, TRAITS, Kind, real_population
+from robobt.learning.opponents.keepers import KEEPER, KINDS, TRAITS, Kind, real_population
 from robobt.world.geometry import wrap_angles
 from robobt.world.state import BALL_RADIUS
 
 COLUMNS = (*ROBOT_COLUMNS, *(f"keeper_{name}" for name in ROBOT_COLUMNS), *BALL_COLUMNS, *TRAITS)
 """Columns of a start: attacker, goalkeeper, ball, and which goalkeeper it is."""
-
-KEEPER = np.dtype([(name, np.float64) for name in TRAITS])
-"""What makes a goalkeeper, by name."""
 
 _GAP = 3e-4
 """Between ball and front before the dribbler takes it [m]."""

@@ -6,12 +6,12 @@ from math import pi
 
 import numpy as np
 
-from robobt.learning.envs.score_on_goalkeeper.starts import KEEPER, keeper_traits
+from robobt.learning.envs.score_on_goalkeeper.starts import keeper_traits
 from robobt.learning.envs.settings import Span
 from robobt.learning.envs.soccer.settings import GOALKEEPER, SoccerSettings
 from robobt.learning.envs.starts import BALL_COLUMNS, GIVE_UP, ROBOT_COLUMNS, parts_of, velocities
 from robobt.learning.envs.task import FloatArray
-from robobt.learning.opponents.keepers import TRAITS
+from robobt.learning.opponents.keepers import KEEPER, TRAITS
 from robobt.sim.records import RecordArray
 from robobt.world.state import BALL_RADIUS
 
