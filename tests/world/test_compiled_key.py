@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import subprocess
 import sys
+from enum import IntEnum
 from pathlib import Path
 from typing import NamedTuple
 
@@ -84,6 +85,21 @@ def test_a_key_follows_the_order_of_a_named_tuples_fields(monkeypatch: pytest.Mo
 
     monkeypatch.setitem(difference.__globals__, "Pair", Turned)
     assert key_of(difference) != before
+
+
+class Half(IntEnum):
+    FIRST = 0
+    SECOND = 1
+
+
+def is_second(half: int) -> bool:
+    return half == Half.SECOND
+
+
+def test_a_key_follows_the_values_of_an_enumeration(monkeypatch: pytest.MonkeyPatch) -> None:
+    before = key_of(is_second)
+    monkeypatch.setitem(is_second.__globals__, "Half", IntEnum("Half", {"FIRST": 0, "SECOND": 2}))
+    assert key_of(is_second) != before
 
 
 def test_a_key_follows_defaults(monkeypatch: pytest.MonkeyPatch) -> None:
