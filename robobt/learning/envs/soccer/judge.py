@@ -90,7 +90,7 @@ class Play(NamedTuple):
     shares: FloatArray  # (n, L) rewards of the learners, added to
 
 
-class Tick(NamedTuple):
+class _Arena(NamedTuple):
     """An arena after a tick."""
 
     judged: Judged
@@ -105,7 +105,7 @@ class Tick(NamedTuple):
     terms: SoccerTerms
 
 
-class Course(NamedTuple):
+class _Course(NamedTuple):
     """What a tick brought: a goal and a fault, 1 blue's, -1 yellow's, 0 nobody's; who has the ball."""
 
     goal: int
@@ -134,7 +134,7 @@ def judge(judged_: FloatArray, after_: After, play_: Play, ledger_: Ledger) -> b
         if is_over(ledger, i):
             any_ended = True
             continue
-        tick = Tick(
+        arena = _Arena(
             judged,
             play.who,
             robots[i],
@@ -147,13 +147,15 @@ def judge(judged_: FloatArray, after_: After, play_: Play, ledger_: Ledger) -> b
             terms[i],
         )
         episode: Progress = episodes[i]
-        begin_tick(episode, _any_learner_kicked(tick))
-        goal = goal_of(episode, tick.ball, judged.field)
-        tick.mind.goal = goal
-        out = goal == 0 and is_out(tick.ball.x, tick.ball.y, judged.field.length / 2, judged.field.width / 2)
-        holder, passed, too_far = _possession(tick)
-        fault, stop = _fault(tick, out, holder, too_far, play.fouls[i], play.stops[i])
-        lost = _has_lost(tick, play.kept[i])
+        begin_tick(episode, _any_learner_kicked(arena))
+        goal = goal_of(episode, arena.ball, judged.field)
+        arena.mind.goal = goal
+        out = goal == 0 and is_out(
+            arena.ball.x, arena.ball.y, judged.field.length / 2, judged.field.width / 2
+        )
+        holder, passed, too_far = _possession(arena)
+        fault, stop = _fault(arena, out, holder, too_far, play.fouls[i], play.stops[i])
+        lost = _has_lost(arena, play.kept[i])
         if lost:
             fault = 1.0
         # Who ended it by that.
@@ -161,8 +163,8 @@ def judge(judged_: FloatArray, after_: After, play_: Play, ledger_: Ledger) -> b
         if rules.restarts:
             out, ended = False, 1.0 if lost else 0.0
             play.fouls[i], play.stops[i] = fault, Stop.NOTHING if lost or goal != 0 else stop
-        success, failed = _ends(tick, goal, out, ended, passed)
-        mean = _reward(tick, Course(goal, fault, holder, passed), play.shares[i])
+        success, failed = _ends(arena, goal, out, ended, passed)
+        mean = _reward(arena, _Course(goal, fault, holder, passed), play.shares[i])
         if end_tick(ledger, i, mean, success, failed, judged.settings.time_limit):
             any_ended = True
             # Who had nothing to do but to hold out has done it.
@@ -172,30 +174,30 @@ def judge(judged_: FloatArray, after_: After, play_: Play, ledger_: Ledger) -> b
 
 
 @compiled_inline
-def _any_learner_kicked(tick: Tick) -> bool:
+def _any_learner_kicked(arena: _Arena) -> bool:
     fired = False
-    for index in tick.who:
-        fired = fired or tick.kicked[index]
+    for index in arena.who:
+        fired = fired or arena.kicked[index]
     return fired
 
 
 @compiled_inline
-def _possession(tick: Tick) -> tuple[int, bool, bool]:
+def _possession(arena: _Arena) -> tuple[int, bool, bool]:
     """Follow the ball; return who holds it, -1 for nobody, whether it was passed, and carried too far."""
-    blue, rules, ball, mind = tick.judged.blue, tick.judged.rules, tick.ball, tick.mind
+    blue, rules, ball, mind = arena.judged.blue, arena.judged.rules, arena.ball, arena.mind
     holder = -1
-    for r in range(len(tick.contact)):
-        if tick.contact[r]:
+    for r in range(len(arena.contact)):
+        if arena.contact[r]:
             holder = r
     mind.blue_ticks = mind.blue_ticks + 1.0 if 0 <= holder < blue else 0.0
     mind.yellow_ticks = mind.yellow_ticks + 1.0 if holder >= blue else 0.0
     if holder < 0:
-        for r in range(len(tick.kicked)):
-            if tick.kicked[r]:
+        for r in range(len(arena.kicked)):
+            if arena.kicked[r]:
                 # It had the ball, if for less than a tick.
                 mind.last, mind.left_x, mind.left_y = r, ball.x, ball.y
                 mind.taken_x = nan
-        if mind.last >= 0 and not keeps_ball(tick.robots[mind.last], ball):
+        if mind.last >= 0 and not keeps_ball(arena.robots[mind.last], ball):
             mind.taken_x = nan
         return holder, False, False
     last, passed = mind.last, False
@@ -211,21 +213,23 @@ def _possession(tick: Tick) -> tuple[int, bool, bool]:
 
 
 @compiled_inline
-def _fault(tick: Tick, out: bool, holder: int, too_far: bool, fault: float, stop: int) -> tuple[float, int]:
+def _fault(
+    arena: _Arena, out: bool, holder: int, too_far: bool, fault: float, stop: int
+) -> tuple[float, int]:
     """Return who breaks a rule, 1 blue, -1 yellow, 0 nobody, and what stops play.
 
     ``fault`` and ``stop`` are those of the rules of restarts. Of several the last counts.
     """
-    blue, field = tick.judged.blue, tick.judged.field
+    blue, field = arena.judged.blue, arena.judged.field
     if out:
         stop = Stop.OUT
-        if tick.touch >= 0:
-            fault = 1.0 if tick.touch < blue else -1.0
+        if arena.touch >= 0:
+            fault = 1.0 if arena.touch < blue else -1.0
     if too_far:
         fault, stop = 1.0 if holder < blue else -1.0, Stop.CARRIED
-    if tick.judged.rules.areas:
-        for index in tick.who:
-            sign, robot = 1.0 if index < blue else -1.0, tick.robots[index]
+    if arena.judged.rules.areas:
+        for index in arena.who:
+            sign, robot = 1.0 if index < blue else -1.0, arena.robots[index]
             if in_area(
                 sign * robot.x, sign * robot.y, field.length / 2, field.defense_depth, field.defense_width
             ):
@@ -234,12 +238,12 @@ def _fault(tick: Tick, out: bool, holder: int, too_far: bool, fault: float, stop
 
 
 @compiled_inline
-def _has_lost(tick: Tick, kept: bool) -> bool:
+def _has_lost(arena: _Arena, kept: bool) -> bool:
     """Return whether blue has held the ball for too long, or yellow for long enough."""
-    rules, mind = tick.judged.rules, tick.mind
+    rules, mind = arena.judged.rules, arena.mind
     if rules.longest_hold is not None and mind.blue_ticks > rules.longest_hold:
         return True
-    return tick.judged.aim != _SAVE and (_at_least(mind.yellow_ticks, rules.held_by) or kept)
+    return arena.judged.aim != _SAVE and (_at_least(mind.yellow_ticks, rules.held_by) or kept)
 
 
 @compilable
@@ -248,12 +252,12 @@ def _at_least(ticks: float, most: int | None) -> bool:
 
 
 @compiled_inline
-def _ends(tick: Tick, goal: int, out: bool, ended: float, passed: bool) -> tuple[bool, bool]:
+def _ends(arena: _Arena, goal: int, out: bool, ended: float, passed: bool) -> tuple[bool, bool]:
     """Return whether the episode ends in success, by what blue aims at, and whether it ends otherwise.
 
     ``ended`` tells who ended it by a fault: 1 blue, -1 yellow, 0 nobody.
     """
-    aim, rules, mind = tick.judged.aim, tick.judged.rules, tick.mind
+    aim, rules, mind = arena.judged.aim, arena.judged.rules, arena.mind
     if aim == _SAVE:
         success = goal > 0 or out or ended < 0.0 or _at_least(mind.blue_ticks, rules.held_by)
         failed = goal < 0 or ended > 0.0
@@ -271,15 +275,15 @@ def _ends(tick: Tick, goal: int, out: bool, ended: float, passed: bool) -> tuple
 
 
 @compiled_inline
-def _reward(tick: Tick, course: Course, shares: FloatArray) -> float:
+def _reward(arena: _Arena, course: _Course, shares: FloatArray) -> float:
     """Add to ``shares`` (L,) what each learner earns in a tick; return the mean."""
-    blue, weights, field, ball = tick.judged.blue, tick.judged.weights, tick.judged.field, tick.ball
-    half_length, learners = field.length / 2, len(tick.who)
+    blue, weights, field, ball = arena.judged.blue, arena.judged.weights, arena.judged.field, arena.ball
+    half_length, learners = field.length / 2, len(arena.who)
     blue_to_goal, yellow_to_goal = hypot(half_length - ball.x, ball.y), hypot(half_length + ball.x, ball.y)
-    blue_own, yellow_own = _own_rewards(tick)
+    blue_own, yellow_own = _own_rewards(arena)
     total, part = 0.0, 1.0 / max(learners, 1)
     for k in range(learners):
-        is_blue, memory = tick.who[k] < blue, tick.memories[k]
+        is_blue, memory = arena.who[k] < blue, arena.memories[k]
         sign = 1.0 if is_blue else -1.0
         earned = team_reward(
             weights,
@@ -289,7 +293,7 @@ def _reward(tick: Tick, course: Course, shares: FloatArray) -> float:
             course.holder >= 0 and (course.holder < blue) == is_blue,
             blue_to_goal if is_blue else yellow_to_goal,
             memory,
-            tick.terms,
+            arena.terms,
             part,
         )
         mean_own = blue_own if is_blue else yellow_own
@@ -300,21 +304,21 @@ def _reward(tick: Tick, course: Course, shares: FloatArray) -> float:
 
 
 @compiled_inline
-def _own_rewards(tick: Tick) -> tuple[float, float]:
+def _own_rewards(arena: _Arena) -> tuple[float, float]:
     """Note what each learner's own terms bring in a tick; return their means for blue and for yellow."""
-    judged, ball, robots = tick.judged, tick.ball, tick.robots
-    blue, weights, part = judged.blue, judged.weights, 1.0 / max(len(tick.who), 1)
+    judged, ball, robots = arena.judged, arena.ball, arena.robots
+    blue, weights, part = judged.blue, judged.weights, 1.0 / max(len(arena.who), 1)
     blues = yellows = 0
     of_blue = of_yellow = 0.0
-    for k in range(len(tick.who)):
-        me, memory = tick.who[k], tick.memories[k]
-        sign, fired = 1.0 if me < blue else -1.0, tick.kicked[me]
+    for k in range(len(arena.who)):
+        me, memory = arena.who[k], arena.memories[k]
+        sign, fired = 1.0 if me < blue else -1.0, arena.kicked[me]
         gap = _nearest(robots, me) - 2.0 * ROBOT_RADIUS
-        own = own_reward(weights, judged.field, sign, robots[me], ball, fired, gap, memory, tick.terms, part)
+        own = own_reward(weights, judged.field, sign, robots[me], ball, fired, gap, memory, arena.terms, part)
         if weights.sent > 0.0 and fired:
             first, last = (0, blue) if me < blue else (blue, len(robots))
             aimed = weights.sent * sent(ball, robots, first, last, judged.rules.pass_length)
-            tick.terms.sent += part * aimed
+            arena.terms.sent += part * aimed
             own += aimed
         memory.own = own
         if me < blue:
