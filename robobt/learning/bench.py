@@ -17,6 +17,7 @@ from robobt.learning.envs.shoot.task import ShootTask
 from robobt.learning.envs.soccer.suite import Small3v3Settings
 from robobt.learning.envs.soccer.task import SoccerTask
 from robobt.learning.envs.task import FloatArray
+from robobt.sim.records import COMMAND, size
 
 SIZES = {"single": 1, "vector_64": 64, "vector": 256}
 """Ends of the result's keys, and how many arenas they stand for."""
@@ -61,9 +62,9 @@ def bench_env(seconds: float = 2.0) -> dict[str, float]:
         ),
     )
     for name, kind, decide, env_id in cases:
-        for size, n in SIZES.items():
+        for arenas, n in SIZES.items():
             step, physics = _measure(kind(n=n, seed=0), decide, seconds)
-            figures[f"{name}_{size}"] = n / step
+            figures[f"{name}_{arenas}"] = n / step
         figures[f"{name}_physics_share"] = physics / step
         figures[f"{name}_gymnasium"] = 1.0 / _measure_gymnasium(env_id, decide, seconds)
     return figures
@@ -94,8 +95,8 @@ def _measure(task: Task, decide: Decide, seconds: float) -> tuple[float, float]:
 
 
 def _physics(task: Task, steps: int) -> float:
-    commands = np.zeros((task.n, task.robots, 6))
-    commands[..., 2] = 1.0
+    commands = np.zeros((task.n, task.robots, size(COMMAND)))
+    commands.view(COMMAND)["omega"] = 1.0
     begin = process_time()
     for _ in range(steps * task.settings.decide_every):
         task.arenas.step(commands)

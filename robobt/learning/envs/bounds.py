@@ -43,8 +43,8 @@ def scale_of(spec: ObservationSpec, action: ActionScaling) -> tuple[float, ...]:
 def ranges_of(settings: TaskSettings) -> dict[str, float]:
     """Return how large the quantities are at most that entries of most observations name as their ranges."""
     noise, limits, own = settings.noise, settings.simulator.limits, settings.robot_limits
-    _, fastest = settings.randomisation.top_speed
-    driven = max(own.max_speed * fastest, limits.max_speed) + BUMP
+    fastest = own.max_speed * max(settings.randomisation.top_speed)
+    driven = max(fastest, limits.max_speed) + BUMP
     turned = max(own.max_turn, limits.max_turn) + driven / ROBOT_RADIUS
     # A ball comes off a robot that drives and turns at most so much faster than it was kicked.
     kicked = settings.simulator.kicker.max_speed + driven + turned * ROBOT_RADIUS + BUMP

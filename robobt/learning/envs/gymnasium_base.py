@@ -212,8 +212,11 @@ class TaskEnv(_OverArenas, gymnasium.Env[Observation, Action]):
 
     def _leave_trail(self) -> None:
         arenas = self.task.arenas
-        self._robot_trail.append((float(arenas.robots[0, 0, 0]), float(arenas.robots[0, 0, 1])))
-        self._ball_trail.append((float(arenas.balls[0, 0]), float(arenas.balls[0, 1])))
+        for trail, (x, y, *_) in (
+            (self._robot_trail, arenas.robots[0, 0]),
+            (self._ball_trail, arenas.balls[0]),
+        ):
+            trail.append((float(x), float(y)))
 
 
 class TaskVectorEnv(_OverArenas, VectorEnv[Observation, Action, Any]):

@@ -8,8 +8,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from robobt.learning.envs.settings import NoiseSettings, TaskSettings
+from robobt.learning.envs.starts import split
 from robobt.learning.envs.task import FloatArray, IntArray
+from robobt.sim.records import size as size_of
 from robobt.world.geometry import wrap_angles
+from robobt.world.records import BALL, ROBOT, ROBOT_SIZE
 
 CUT_OFF = 4.0
 """Standard deviations at which noise is cut off."""
@@ -39,9 +42,9 @@ class Perception:
         self._differenced = settings.velocities == "finite_difference"
         self._period = settings.period
         self._rngs = rngs
-        self._drawn = np.zeros((n, 6 * robots + 4))
-        self._last_robots = np.zeros((n, robots, 6))
-        self._last_balls = np.zeros((n, 4))
+        self._drawn = np.zeros((n, robots * ROBOT_SIZE + size_of(BALL)))
+        self._last_robots = np.zeros((n, robots, ROBOT_SIZE))
+        self._last_balls = np.zeros((n, size_of(BALL)))
         self._late = np.zeros((settings.latency + 1, n, size))
         self._newest = 0
         self._all = np.arange(n)
@@ -80,25 +83,26 @@ class Perception:
     ) -> tuple[FloatArray, FloatArray]:
         robots, balls, noise = robots.copy(), balls.copy(), self._noise
         if self._noisy:
-            drawn, count = self._draw(which), robots.shape[1]
-            of_robots, of_balls = drawn[:, : 6 * count].reshape(-1, count, 6), drawn[:, 6 * count :]
+            of_robots, of_balls, _ = split(self._draw(which), robots.shape[1])
             robots[..., :2] += noise.robot_position * of_robots[..., :2]
-            robots[..., 2] = wrap_angles(robots[..., 2] + noise.heading * of_robots[..., 2])
+            heading = robots.view(ROBOT)["heading"]
+            heading[:] = wrap_angles(heading + noise.heading * of_robots.view(ROBOT)["heading"])
             balls[:, :2] += noise.ball_position * of_balls[:, :2]
         if self._differenced:
             if first:
                 robots[..., 3:] = 0.0
                 balls[:, 2:] = 0.0
             else:
-                moved = robots[..., :3] - self._last_robots[which, :, :3]
-                moved[..., 2] = wrap_angles(moved[..., 2])
-                robots[..., 3:] = moved / self._period
+                moved = robots - self._last_robots[which]
+                turned = moved.view(ROBOT)["heading"]
+                turned[:] = wrap_angles(turned)
+                robots[..., 3:] = moved[..., :3] / self._period
                 balls[:, 2:] = (balls[:, :2] - self._last_balls[which, :2]) / self._period
             self._last_robots[which] = robots
             self._last_balls[which] = balls
         elif self._noisy:
             robots[..., 3:5] += noise.velocity * of_robots[..., 3:5]
-            robots[..., 5] += noise.turn_rate * of_robots[..., 5]
+            robots.view(ROBOT)["omega"] += noise.turn_rate * of_robots.view(ROBOT)["omega"]
             balls[:, 2:] += noise.velocity * of_balls[:, 2:]
         return robots, balls
 

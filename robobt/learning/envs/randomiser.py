@@ -51,13 +51,14 @@ class Randomiser:
             return
         arenas, ranges = self._arenas, self._ranges
         drawn = np.array([self._rngs[arena].random(7) for arena in which.tolist()]).T
-        friction = _within(ranges.friction, drawn[0])
-        self.acceleration[which] = _within(ranges.acceleration, drawn[1])
-        mass = _within(ranges.mass, drawn[2])
-        self.kick[which] = _within(ranges.kick_speed, drawn[3])
-        dribbler = _within(ranges.dribbler, drawn[4])
-        delay = _within(ranges.control_delay, drawn[5])
-        self.top_speed[which] = _within(ranges.top_speed, drawn[6])
+        friction, acceleration, mass, kick, dribbler, delay, top_speed = drawn
+        friction = _within(ranges.friction, friction)
+        self.acceleration[which] = _within(ranges.acceleration, acceleration)
+        mass = _within(ranges.mass, mass)
+        self.kick[which] = _within(ranges.kick_speed, kick)
+        dribbler = _within(ranges.dribbler, dribbler)
+        delay = _within(ranges.control_delay, delay)
+        self.top_speed[which] = _within(ranges.top_speed, top_speed)
         own, now = self._arena_parameters, arenas.arena_parameters
         for name in ("slide_deceleration", "roll_deceleration"):
             now["ball"][name][which] = own["ball"][name][which] * friction
@@ -88,4 +89,5 @@ class Randomiser:
 
 
 def _within(span: Span, share: FloatArray) -> FloatArray:
-    return span[0] + (span[1] - span[0]) * share
+    least, most = span
+    return least + (most - least) * share

@@ -47,17 +47,15 @@ _LOOK_AHEAD = 1.5
 
 def straight_drive(observation: FloatArray) -> FloatArray:
     """Drive at the ball at full speed, whatever the heading, (n, 6) -> (n, 3): the fastest Go-To-Ball."""
-    actions = np.zeros((len(observation), 3))
-    actions[:, 0] = observation[:, 1]
-    actions[:, 1] = observation[:, 0]
-    return actions
+    sin_ball, cos_ball, *_ = observation.T
+    return np.column_stack((cos_ball, sin_ball, np.zeros(len(observation))))
 
 
 def drive_and_face(observation: FloatArray, max_turn: float) -> FloatArray:
     """Drive straight at the ball at full speed and turn to it, (n, 6) -> (n, 3)."""
-    actions = straight_drive(observation)
-    actions[:, 2] = np.clip(AIM_GAIN / max_turn * np.arctan2(observation[:, 0], observation[:, 1]), -1.0, 1.0)
-    return actions
+    sin_ball, cos_ball, *_ = observation.T
+    turn = np.clip(AIM_GAIN / max_turn * np.arctan2(sin_ball, cos_ball), -1.0, 1.0)
+    return np.column_stack((cos_ball, sin_ball, turn))
 
 
 def straight_drive_among(observation: FloatArray) -> FloatArray:
@@ -73,11 +71,11 @@ def freest_way(observation: FloatArray) -> FloatArray:
     fast, slow = (2.0 * np.pi * np.arange(count) / count for count in (WAYS, SLOW_WAYS))
     ahead = np.concatenate((np.cos(fast), 0.5 * np.cos(slow), [0.0]))
     aside = np.concatenate((np.sin(fast), 0.5 * np.sin(slow), [0.0]))
-    needed = np.minimum(_LOOK_AHEAD, observation[:, 2] / SPEED)[:, None]
+    c, s, distance, vx, vy, *_ = observation.T[..., None]
+    needed = np.minimum(_LOOK_AHEAD, distance / SPEED)
     free = np.maximum(observation[:, FIRST_WAY:], 0.05)
-    c, s = observation[:, 0, None], observation[:, 1, None]
     x, y = c * ahead - s * aside, s * ahead + c * aside
-    changed = np.hypot(x - observation[:, 3, None] / SPEED, y - observation[:, 4, None] / SPEED)
+    changed = np.hypot(x - vx / SPEED, y - vy / SPEED)
     cost = -ahead + np.maximum(1.0 / free - 1.0 / needed, 0.0) / SPEED + 0.05 * changed
     best = cost.argmin(axis=1)[:, None]
     way = np.take_along_axis(x, best, 1), np.take_along_axis(y, best, 1)
@@ -89,7 +87,8 @@ def crowd(observation: FloatArray, learners: int) -> FloatArray:
     ball = observation.reshape(len(observation), learners, -1)[..., BALL : BALL + 2]
     actions = np.full((len(observation), learners, SCORE_ACTION.size), -1.0)
     actions[..., :2] = ball / np.maximum(np.linalg.norm(ball, axis=-1, keepdims=True), 1e-6)
-    turn = AIM_GAIN / SCORE_ACTION.max_turn * np.arctan2(ball[..., 1], ball[..., 0])
+    x, y = np.moveaxis(ball, -1, 0)
+    turn = AIM_GAIN / SCORE_ACTION.max_turn * np.arctan2(y, x)
     actions[..., 2] = np.clip(turn, -1.0, 1.0)
     return actions.reshape(len(observation), -1)
 
@@ -119,9 +118,9 @@ def turn_and_kick(
 
     It takes (n, 10) and answers (n, 2); ``pull`` is what the dribbler is relied on to hold with [m/s^2].
     """
-    ball_x, ball_y, _, sideways = observation[:, :4].T
-    upper = np.arctan2(observation[:, 6], observation[:, 7])
-    lower = np.arctan2(observation[:, 8], observation[:, 9])
+    ball_x, ball_y, _, sideways, _, _, sin_upper, cos_upper, sin_lower, cos_lower = observation.T
+    upper = np.arctan2(sin_upper, cos_upper)
+    lower = np.arctan2(sin_lower, cos_lower)
     half = (np.mod(upper - lower + np.pi, 2 * np.pi) - np.pi) / 2
     middle = np.arctan2(np.sin(lower + half), np.cos(lower + half))
     leaving = np.arctan2(sideways, scaling.kick_speed)
@@ -139,14 +138,15 @@ def drive_and_kick(observation: FloatArray, scaling: ActionScaling = SCORE_ACTIO
     It takes (n, 19), :data:`robobt.world.scoring.SCORE_ON_GOALKEEPER`, and answers (n, 4).
     """
     ball, posts = observation[:, 3:5], observation[:, 9:13].reshape(-1, 2, 2)
-    keeper = observation[:, 13:15]
-    angles = np.arctan2(posts[..., 1], posts[..., 0])
-    beside = np.abs(wrap_angles(np.arctan2(keeper[:, 1], keeper[:, 0])[:, None] - angles))
-    there = np.arange(len(observation)), beside.argmax(axis=1)
-    corner = _CORNER * posts[there] + (1.0 - _CORNER) * posts[there[0], 1 - there[1]]
-    has_it = (np.hypot(*ball.T) < _IN_MOUTH) & (np.abs(ball[:, 1]) < _IN_MOUTH / 2)
-    aim = np.where(has_it[:, None], corner, ball)
-    turn = np.arctan2(aim[:, 1], aim[:, 0])
+    (ball_x, ball_y), (post_x, post_y) = ball.T, np.moveaxis(posts, -1, 0)
+    keeper_x, keeper_y = observation[:, 13:15].T
+    angles = np.arctan2(post_y, post_x)
+    beside = np.abs(wrap_angles(np.arctan2(keeper_y, keeper_x)[:, None] - angles))
+    rows, far = np.arange(len(observation)), beside.argmax(axis=1)
+    corner = _CORNER * posts[rows, far] + (1.0 - _CORNER) * posts[rows, 1 - far]
+    has_it = (np.hypot(ball_x, ball_y) < _IN_MOUTH) & (np.abs(ball_y) < _IN_MOUTH / 2)
+    aim_x, aim_y = np.where(has_it[:, None], corner, ball).T
+    turn = np.arctan2(aim_y, aim_x)
     near = np.hypot(*posts.mean(axis=1).T) < _SHOOTING
     speed = np.where(has_it, np.where(near, 0.0, _CARRYING), 1.0)
     way = np.where(has_it[:, None], posts.mean(axis=1), ball)

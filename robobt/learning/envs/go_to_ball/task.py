@@ -113,14 +113,10 @@ class GoToBallTask(ArenaTask):
         """See :attr:`ArenaTask.ranges`."""
         settings = self.settings
         limits, starts = settings.robot_limits, settings.starts
-        fastest = limits.max_speed * settings.randomisation.top_speed[1]
-        speed = max(min(fastest, settings.action.max_speed), starts.robot_speed[1]) + BUMP
-        speed += max(0.0, starts.ball_speed[1])
-        turn = max(
-            min(limits.max_turn, settings.action.max_turn),
-            abs(starts.robot_turn[0]),
-            abs(starts.robot_turn[1]),
-        )
+        fastest = limits.max_speed * max(settings.randomisation.top_speed)
+        speed = max(min(fastest, settings.action.max_speed), *starts.robot_speed) + BUMP
+        speed += max(0.0, *starts.ball_speed)
+        turn = max(min(limits.max_turn, settings.action.max_turn), *map(abs, starts.robot_turn))
         # Sliding along a wall turns a robot, at most until it rolls along it.
         turn += speed / ROBOT_RADIUS
         return {

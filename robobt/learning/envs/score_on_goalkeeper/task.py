@@ -80,8 +80,8 @@ class ScoreOnGoalkeeperTask(ArenaTask):
         """See :attr:`ArenaTask.ranges`."""
         settings, noise = self.settings, self.settings.noise
         limits, starts = settings.robot_limits, settings.starts
-        far, fastest = farthest(settings), limits.max_speed * settings.randomisation.top_speed[1]
-        driven = max(min(fastest, settings.action.max_speed), starts.robot_speed[1]) + BUMP
+        far, fastest = farthest(settings), limits.max_speed * max(settings.randomisation.top_speed)
+        driven = max(min(fastest, settings.action.max_speed), *starts.robot_speed) + BUMP
         turned = min(limits.max_turn, settings.action.max_turn) + driven / ROBOT_RADIUS
         # A ball comes off a robot that drives and turns at most so much faster than it was kicked.
         kicked = settings.simulator.kicker.max_speed + driven + turned * ROBOT_RADIUS + BUMP
@@ -91,7 +91,7 @@ class ScoreOnGoalkeeperTask(ArenaTask):
             "goal": far + settings.field.goal_width,
             "speed": seen_speed(settings, driven, noise.robot_position),
             "turn": seen_turn(settings, turned),
-            "ball_speed": seen_speed(settings, max(kicked, starts.ball_speed[1]), noise.ball_position),
+            "ball_speed": seen_speed(settings, max(kicked, *starts.ball_speed), noise.ball_position),
             "keeper_speed": seen_speed(settings, keeper, noise.robot_position),
         }
 

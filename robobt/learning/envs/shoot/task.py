@@ -50,7 +50,14 @@ class _Task(Protocol):
     firing_counts: float
 
 
-_TASK, _TERMS = record_dtype(_Task), record_dtype(ShootTerms)
+class _Action(Protocol):
+    """Turning rate and kick, in [-1, 1]."""
+
+    turn: float
+    kick: float
+
+
+_TASK, _ACTION, _TERMS = record_dtype(_Task), record_dtype(_Action), record_dtype(ShootTerms)
 
 
 class ShootTask(ArenaTask):
@@ -109,13 +116,12 @@ class ShootTask(ArenaTask):
 
 
 @compiled_lean
-def _judge(task_: FloatArray, actions: FloatArray, after_: After, ledger_: Ledger) -> bool:
+def _judge(task_: FloatArray, actions_: FloatArray, after_: After, ledger_: Ledger) -> bool:
     task: _Task = task_.view(_TASK)[0]
     arenas, ledger = After(*after_), Ledger(*ledger_)
     robots, balls = arenas.robots.view(ROBOT)[..., 0], arenas.balls.view(BALL)[..., 0]
     episodes, terms = ledger.progress.view(PROGRESS)[..., 0], ledger.terms.view(_TERMS)[..., 0]
-    kick_action = actions[:, 1]
-    any_ended = False
+    actions, any_ended = actions_.view(_ACTION)[..., 0], False
     for i in range(len(balls)):
         if is_over(ledger, i):
             any_ended = True
@@ -125,7 +131,7 @@ def _judge(task_: FloatArray, actions: FloatArray, after_: After, ledger_: Ledge
         begin_tick(episode, fired)
         goal = goal_of(episode, ball, task.field) > 0
         out = _left(task, robot, ball, episode)
-        kick = fired if task.firing_counts else kick_action[i] > 0.0
+        kick = fired if task.firing_counts else actions[i].kick > 0.0
         earned = reward(task.weights, task.field, robot, ball, kick, goal, out, episode, terms[i])
         if end_tick(ledger, i, earned, goal, out, task.settings.time_limit):
             any_ended = True
