@@ -8,7 +8,8 @@ import numpy as np
 
 from robobt.world.compiled import compilable, compiled
 from robobt.world.geometry import FloatArray
-from robobt.world.observation import Entry, ObservationSpec, entries, kinematics, motion
+from robobt.world.observation import Entry, ObservationSpec, entries, kinematics, motion, record_of, turned
+from robobt.world.records import BALL, ROBOT
 from robobt.world.state import ROBOT_RADIUS, Frame, RobotState
 
 SPEED = 1.5
@@ -53,6 +54,9 @@ velocity obstacles of Fiorini & Shiller (1998), seen from the robot.
 """
 
 
+_HEAD = record_of(GO_TO_BALL_AMONG_ROBOTS.entries[:FIRST_WAY])
+
+
 @compilable
 def free_time(ox: float, oy: float, wx: float, wy: float, apart: float) -> float:
     """Return when one at (ox, oy) that drives with (wx, wy), both relative, comes nearer than ``apart``."""
@@ -79,17 +83,21 @@ def among_robots_rows(robots: FloatArray, balls: FloatArray) -> FloatArray:
         balls: (n, 4) x, y, vx, vy.
     """
     rows = np.empty((len(robots), FIRST_WAY + WAYS + SLOW_WAYS + 1))
-    for i in range(len(robots)):
-        me, row = robots[i, 0], rows[i]
-        c, s = cos(me[2]), sin(me[2])
-        dx, dy = balls[i, 0] - me[0], balls[i, 1] - me[1]
+    each, rolling = robots.view(ROBOT)[..., 0], balls.view(BALL)[:, 0]
+    heads = rows[:, :FIRST_WAY].view(_HEAD)[:, 0]
+    for i in range(len(rows)):
+        me, others, ball, seen = each[i, 0], each[i, 1:], rolling[i], heads[i]
+        c, s = cos(me.heading), sin(me.heading)
+        dx, dy = ball.x - me.x, ball.y - me.y
         distance = hypot(dx, dy)
         # A ball at the robot's very centre counts as straight ahead. NaN has to stay NaN.
         ux, uy = c, s
         if distance != 0.0:
             ux, uy = dx / distance, dy / distance
-        row[0], row[1], row[2] = c * ux + s * uy, c * uy - s * ux, distance
-        row[3], row[4], row[5] = c * me[3] + s * me[4], c * me[4] - s * me[3], me[5]
+        seen.ball_x, seen.ball_y = turned(c, s, ux, uy)
+        seen.ball_distance = distance
+        seen.vx, seen.vy = turned(c, s, me.vx, me.vy)
+        seen.omega = me.omega
         for way in range(WAYS + SLOW_WAYS + 1):
             speed, angle = 0.0, 0.0
             if way < WAYS:
@@ -99,12 +107,11 @@ def among_robots_rows(robots: FloatArray, balls: FloatArray) -> FloatArray:
             ahead, aside = speed * cos(angle), speed * sin(angle)
             vx, vy = ux * ahead - uy * aside, uy * ahead + ux * aside
             free = AHEAD
-            for other in range(1, robots.shape[1]):
-                it = robots[i, other]
-                ox = it[0] - me[0] + 0.5 * LAG * (vx - me[3])
-                oy = it[1] - me[1] + 0.5 * LAG * (vy - me[4])
-                free = min(free, free_time(ox, oy, it[3] - vx, it[4] - vy, 2.0 * ROBOT_RADIUS + MARGIN))
-            row[FIRST_WAY + way] = free
+            for other in others:
+                ox = other.x - me.x + 0.5 * LAG * (vx - me.vx)
+                oy = other.y - me.y + 0.5 * LAG * (vy - me.vy)
+                free = min(free, free_time(ox, oy, other.vx - vx, other.vy - vy, 2.0 * ROBOT_RADIUS + MARGIN))
+            rows[i, FIRST_WAY + way] = free
     return rows
 
 

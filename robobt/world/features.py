@@ -12,15 +12,28 @@ form of the authors' published code; lengths here are metres.
 
 from __future__ import annotations
 
-from math import atan2, cos, hypot, sin
+from collections.abc import Sequence
+from math import atan2, cos, hypot, inf, sin
+from typing import Any, Protocol
 
 import numpy as np
 
 from robobt.world.avoiding import GO_TO_BALL_AMONG_ROBOTS
-from robobt.world.compiled import compiled
+from robobt.world.compiled import compiled, compiled_lean, record_dtype
 from robobt.world.geometry import FloatArray, wrap_angle
-from robobt.world.observation import OWN_OBSERVATIONS, Row, entries, kinematics, motion
+from robobt.world.observation import (
+    OWN_OBSERVATIONS,
+    Row,
+    ball_named,
+    entries,
+    kinematics,
+    motion,
+    record_of,
+    robot_named,
+    turned,
+)
 from robobt.world.observation import ObservationSpec as ObservationSpec
+from robobt.world.records import BALL, PLACE, ROBOT, Ball, Place, Robot
 from robobt.world.scoring import SCORE_ON_GOALKEEPER
 from robobt.world.state import Frame, RobotState
 from robobt.world.team_view import places_of, team_view
@@ -95,7 +108,20 @@ SHOT_SCENE = ObservationSpec(
 SCENE_HEAD = SHOT_SCENE.size - 4 * SCENE_OPPONENTS
 """Entries of a shot's scene before its opponents, which have four each."""
 
-_ABSENT = np.array(ABSENT)
+
+class Opponent(Protocol):
+    """A place in a shot's scene [m, m/s]."""
+
+    along: float
+    across: float
+    v_along: float
+    v_across: float
+
+
+_WITHOUT_GOAL, _SHOOT_SIZE, _SHOT_SIZE = GO_TO_BALL.size, SHOOT.size, SHOT.size
+_GO_TO_BALL, _SHOOT, _SHOT = record_of(GO_TO_BALL.entries), record_of(SHOOT.entries), record_of(SHOT.entries)
+_GOAL = record_of(GO_TO_BALL_TO_SHOOT.entries[_WITHOUT_GOAL:])
+_SCENE, _OPPONENT = record_of(SHOT_SCENE.entries[:SCENE_HEAD]), record_dtype(Opponent)
 
 OBSERVATIONS = {
     spec.name: spec
@@ -115,110 +141,112 @@ def find_observation(name: str) -> ObservationSpec | None:
     return OBSERVATIONS.get(name) or OWN_OBSERVATIONS.get(name)
 
 
-@compiled
-def _observe_go_to_ball(robot: Row, ball: Row, goal_x: float, row: FloatArray) -> None:
-    c, s = cos(robot[2]), sin(robot[2])
-    dx, dy = ball[0] - robot[0], ball[1] - robot[1]
+@compiled_lean
+def _observe_go_to_ball(robot: Robot, ball: Ball, seen: Any) -> None:
+    c, s = cos(robot.heading), sin(robot.heading)
+    dx, dy = ball.x - robot.x, ball.y - robot.y
     distance = hypot(dx, dy)
     if distance == 0.0:
         # A ball at the robot's very centre counts as straight ahead. NaN has to stay NaN.
-        row[0] = 0.0
-        row[1] = 1.0
+        seen.sin_ball, seen.cos_ball = 0.0, 1.0
     else:
-        row[0] = (c * dy - s * dx) / distance
-        row[1] = (c * dx + s * dy) / distance
-    row[2] = distance
-    row[3] = c * robot[3] + s * robot[4]
-    row[4] = c * robot[4] - s * robot[3]
-    row[5] = robot[5]
-    if len(row) > 6:
-        to_goal = atan2(-ball[1], goal_x - ball[0]) - robot[2]
-        row[6] = sin(to_goal)
-        row[7] = cos(to_goal)
+        ahead, left = turned(c, s, dx, dy)
+        seen.sin_ball, seen.cos_ball = left / distance, ahead / distance
+    seen.ball_distance = distance
+    seen.vx, seen.vy = turned(c, s, robot.vx, robot.vy)
+    seen.omega = robot.omega
 
 
-@compiled
-def _observe_shoot(robot: Row, ball: Row, goal_x: float, post_y: float, row: FloatArray) -> None:
-    c, s = cos(robot[2]), sin(robot[2])
-    dx, dy = ball[0] - robot[0], ball[1] - robot[1]
-    to_upper = atan2(post_y - robot[1], goal_x - robot[0]) - robot[2]
-    to_lower = atan2(-post_y - robot[1], goal_x - robot[0]) - robot[2]
-    row[0] = c * dx + s * dy
-    row[1] = c * dy - s * dx
-    row[2] = c * ball[2] + s * ball[3]
-    row[3] = c * ball[3] - s * ball[2]
-    row[4] = robot[5]
-    row[5] = hypot(goal_x - robot[0], robot[1])
-    row[6] = sin(to_upper)
-    row[7] = cos(to_upper)
-    row[8] = sin(to_lower)
-    row[9] = cos(to_lower)
+@compiled_lean
+def _observe_goal(robot: Robot, ball: Ball, goal_x: float, seen: Any) -> None:
+    to_goal = atan2(-ball.y, goal_x - ball.x) - robot.heading
+    seen.sin_goal, seen.cos_goal = sin(to_goal), cos(to_goal)
 
 
-@compiled
-def _observe_shot(shooter: FloatArray, target: FloatArray, opponent: FloatArray, row: FloatArray) -> None:
-    dx, dy = target[0] - shooter[0], target[1] - shooter[1]
+@compiled_lean
+def _observe_shoot(robot: Robot, ball: Ball, goal_x: float, post_y: float, seen: Any) -> None:
+    c, s = cos(robot.heading), sin(robot.heading)
+    to_upper = atan2(post_y - robot.y, goal_x - robot.x) - robot.heading
+    to_lower = atan2(-post_y - robot.y, goal_x - robot.x) - robot.heading
+    seen.ball_x, seen.ball_y = turned(c, s, ball.x - robot.x, ball.y - robot.y)
+    seen.ball_vx, seen.ball_vy = turned(c, s, ball.vx, ball.vy)
+    seen.omega = robot.omega
+    seen.goal_distance = hypot(goal_x - robot.x, robot.y)
+    seen.sin_upper_post, seen.cos_upper_post = sin(to_upper), cos(to_upper)
+    seen.sin_lower_post, seen.cos_lower_post = sin(to_lower), cos(to_lower)
+
+
+@compiled_lean
+def _observe_shot(shooter: Place, target: Place, opponent: Place, seen: Any) -> None:
+    dx, dy = target.x - shooter.x, target.y - shooter.y
     length = hypot(dx, dy)
     c, s = (dx / length, dy / length) if length > 0.0 else (1.0, 0.0)
-    ox, oy = opponent[0] - shooter[0], opponent[1] - shooter[1]
-    along, across = c * ox + s * oy, abs(c * oy - s * ox)
-    row[0] = atan2(across, along)
-    row[1] = length
-    row[2] = hypot(along, across)
-    row[3] = along
-    row[4] = across
+    along, left = turned(c, s, opponent.x - shooter.x, opponent.y - shooter.y)
+    across = abs(left)
+    seen.angle, seen.target_distance = atan2(across, along), length
+    seen.opponent_distance, seen.along, seen.across = hypot(along, across), along, across
 
 
-@compiled
-def _observe_scene(
-    shooter: FloatArray, ball: FloatArray, target: FloatArray, opponents: FloatArray, row: FloatArray
-) -> None:
-    dx, dy = target[0] - shooter[0], target[1] - shooter[1]
+@compiled_lean
+def _observe_scene(shooter: Robot, ball: Ball, target: Place, seen: Any) -> tuple[float, float, float]:
+    """Fill in what is no opponent; return cosine and sine of the shot's direction, and its length."""
+    dx, dy = target.x - shooter.x, target.y - shooter.y
     length, angle = hypot(dx, dy), atan2(dy, dx)
     c, s = cos(angle), sin(angle)
-    bx, by = ball[0] - shooter[0], ball[1] - shooter[1]
-    row[0] = length
-    row[1] = angle
-    row[2] = abs(target[1])
-    row[3] = wrap_angle(angle - shooter[2])
-    row[4] = c * shooter[3] + s * shooter[4]
-    row[5] = c * shooter[4] - s * shooter[3]
-    row[6] = c * bx + s * by
-    row[7] = c * by - s * bx
-    row[8] = c * ball[2] + s * ball[3]
-    row[9] = c * ball[3] - s * ball[2]
-    places = row[SCENE_HEAD:].reshape(SCENE_OPPONENTS, 4)
-    gaps = np.full(SCENE_OPPONENTS, np.inf)
-    places[:] = _ABSENT
-    for i in range(len(opponents)):
-        other = opponents[i]
-        ox, oy = other[0] - shooter[0], other[1] - shooter[1]
-        along, across = c * ox + s * oy, c * oy - s * ox
+    seen.target_distance, seen.target_angle, seen.target_offset = length, angle, abs(target.y)
+    seen.turn = wrap_angle(angle - shooter.heading)
+    seen.shooter_v_along, seen.shooter_v_across = turned(c, s, shooter.vx, shooter.vy)
+    seen.ball_along, seen.ball_across = turned(c, s, ball.x - shooter.x, ball.y - shooter.y)
+    seen.ball_v_along, seen.ball_v_across = turned(c, s, ball.vx, ball.vy)
+    return c, s, length
+
+
+@compiled_lean
+def _observe_opponents(
+    shooter: Robot,
+    line: tuple[float, float, float],
+    opponents: Sequence[Robot],
+    places: Sequence[Opponent],
+    gaps: FloatArray,
+) -> None:
+    """Fill the places with the opponents nearest to the shot, the ``line`` of :func:`_observe_scene`."""
+    c, s, length = line
+    for k in range(len(places)):
+        gaps[k], empty = inf, places[k]
+        empty.along, empty.across, empty.v_along, empty.v_across = ABSENT
+    for other in opponents:
+        along, across = turned(c, s, other.x - shooter.x, other.y - shooter.y)
         gap = hypot(along - min(max(along, 0.0), length), across)
         # Insert it behind those that are as near, and move the farther ones on.
-        place = SCENE_OPPONENTS
-        while place > 0 and gap < gaps[place - 1]:
-            place -= 1
-            if place + 1 < SCENE_OPPONENTS:
-                gaps[place + 1] = gaps[place]
-                places[place + 1] = places[place]
-        if place < SCENE_OPPONENTS:
-            gaps[place] = gap
-            places[place, 0] = along
-            places[place, 1] = across
-            places[place, 2] = c * other[3] + s * other[4]
-            places[place, 3] = c * other[4] - s * other[3]
+        k = len(places)
+        while k > 0 and gap < gaps[k - 1]:
+            k -= 1
+            if k + 1 < len(places):
+                gaps[k + 1] = gaps[k]
+                here, there = places[k], places[k + 1]
+                there.along, there.across = here.along, here.across
+                there.v_along, there.v_across = here.v_along, here.v_across
+        if k < len(places):
+            gaps[k], place = gap, places[k]
+            place.along, place.across = along, across
+            place.v_along, place.v_across = turned(c, s, other.vx, other.vy)
 
 
 @compiled
 def go_to_ball_rows(robots: FloatArray, balls: FloatArray, goal_x: float, size: int) -> FloatArray:
     """Compute the states of many arenas, (n, size): :data:`GO_TO_BALL` or :data:`GO_TO_BALL_TO_SHOOT`.
 
-    Arguments as for :func:`shoot_rows`; of the balls only x and y count.
+    Arguments as for :func:`shoot_rows`.
     """
     rows = np.empty((len(robots), size))
-    for i in range(len(robots)):
-        _observe_go_to_ball(robots[i], balls[i], goal_x, rows[i])
+    each, rolling = robots.view(ROBOT)[:, 0], balls.view(BALL)[:, 0]
+    seen = rows[:, :_WITHOUT_GOAL].view(_GO_TO_BALL)[:, 0]
+    for i in range(len(rows)):
+        _observe_go_to_ball(each[i], rolling[i], seen[i])
+    if size > _WITHOUT_GOAL:
+        goals = rows[:, _WITHOUT_GOAL:].view(_GOAL)[:, 0]
+        for i in range(len(rows)):
+            _observe_goal(each[i], rolling[i], goal_x, goals[i])
     return rows
 
 
@@ -230,9 +258,10 @@ def shoot_rows(robots: FloatArray, balls: FloatArray, goal_x: float, post_y: flo
     ``goal_x`` is where the attacked goal's line is, ``post_y`` the distance of its posts from the field's
     long axis [m].
     """
-    rows = np.empty((len(robots), 10))
-    for i in range(len(robots)):
-        _observe_shoot(robots[i], balls[i], goal_x, post_y, rows[i])
+    rows = np.empty((len(robots), _SHOOT_SIZE))
+    each, rolling, seen = robots.view(ROBOT)[:, 0], balls.view(BALL)[:, 0], rows.view(_SHOOT)[:, 0]
+    for i in range(len(rows)):
+        _observe_shoot(each[i], rolling[i], goal_x, post_y, seen[i])
     return rows
 
 
@@ -245,10 +274,12 @@ def shot_features(shooter: FloatArray, targets: FloatArray, opponents: FloatArra
 
     Positions in metres: the ``shooter`` (2,), ``targets`` (T, 2) and ``opponents`` (K, 2).
     """
-    rows = np.empty((len(targets), len(opponents), 5))
-    for i in range(len(targets)):
-        for k in range(len(opponents)):
-            _observe_shot(shooter, targets[i], opponents[k], rows[i, k])
+    rows = np.empty((len(targets), len(opponents), _SHOT_SIZE))
+    me, aims, others = shooter.view(PLACE)[0], targets.view(PLACE)[:, 0], opponents.view(PLACE)[:, 0]
+    seen = rows.view(_SHOT)[..., 0]
+    for i in range(len(aims)):
+        for k in range(len(others)):
+            _observe_shot(me, aims[i], others[k], seen[i, k])
     return rows
 
 
@@ -274,9 +305,13 @@ def shot_scene(
         (n, 34): :data:`SHOT_SCENE`, the nearest opponent first, then the others by
         their distance from the segment; places that are left are :data:`ABSENT`.
     """
-    rows = np.empty((len(targets), SCENE_HEAD + 4 * SCENE_OPPONENTS))
-    for i in range(len(targets)):
-        _observe_scene(shooters[i], balls[i], targets[i], opponents[i], rows[i])
+    rows = np.empty((len(targets), SCENE_HEAD + len(ABSENT) * SCENE_OPPONENTS))
+    each, rolling, aims = shooters.view(ROBOT)[:, 0], balls.view(BALL)[:, 0], targets.view(PLACE)[:, 0]
+    others, gaps = opponents.view(ROBOT)[..., 0], np.empty(SCENE_OPPONENTS)
+    seen, places = rows[:, :SCENE_HEAD].view(_SCENE)[:, 0], rows[:, SCENE_HEAD:].view(_OPPONENT)
+    for i in range(len(rows)):
+        line = _observe_scene(each[i], rolling[i], aims[i], seen[i])
+        _observe_opponents(each[i], line, others[i], places[i], gaps)
     return rows
 
 
@@ -292,12 +327,25 @@ def go_to_ball_to_shoot_of(frame: Frame, robot: RobotState) -> FloatArray:
 
 def _go_to_ball(frame: Frame, robot: RobotState, size: int) -> FloatArray:
     row = np.empty(size)
-    _observe_go_to_ball(kinematics(robot), motion(frame), frame.field.half_length, row)
+    _go_to_ball_row(kinematics(robot), motion(frame), frame.field.half_length, row)
     return row
+
+
+@compiled
+def _go_to_ball_row(robot: Row, ball: Row, goal_x: float, row: FloatArray) -> None:
+    me, rolling = robot_named(robot), ball_named(ball)
+    _observe_go_to_ball(me, rolling, row[:_WITHOUT_GOAL].view(_GO_TO_BALL)[0])
+    if len(row) > _WITHOUT_GOAL:
+        _observe_goal(me, rolling, goal_x, row[_WITHOUT_GOAL:].view(_GOAL)[0])
 
 
 def shoot_of(frame: Frame, robot: RobotState) -> FloatArray:
     """Compute the Shoot state of one robot in a frame, (10,)."""
-    field, row = frame.field, np.empty(10)
-    _observe_shoot(kinematics(robot), motion(frame), field.half_length, field.goal_width / 2, row)
+    field, row = frame.field, np.empty(_SHOOT_SIZE)
+    _shoot_row(kinematics(robot), motion(frame), field.half_length, field.goal_width / 2, row)
     return row
+
+
+@compiled
+def _shoot_row(robot: Row, ball: Row, goal_x: float, post_y: float, row: FloatArray) -> None:
+    _observe_shoot(robot_named(robot), ball_named(ball), goal_x, post_y, row.view(_SHOOT)[0])

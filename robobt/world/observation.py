@@ -2,20 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from math import inf
+from typing import Any, NamedTuple, cast
 
 import numpy as np
 from numpy.typing import NDArray
 
+from robobt.world.compiled import compilable
 from robobt.world.field import FieldGeometry
-from robobt.world.geometry import FloatArray
-from robobt.world.records import BALL, ROBOT
+from robobt.world.geometry import FloatArray, Point
+from robobt.world.records import BALL, ROBOT, Ball, Robot
 from robobt.world.state import Frame, RobotState
 
-Row = FloatArray | tuple[float, ...]
-"""Numbers in a fixed order: a robot's x, y, heading, vx, vy, omega or a ball's x, y, vx, vy."""
+Row = tuple[float, ...]
+"""The numbers of a :class:`~robobt.world.records.Robot` or a :class:`~robobt.world.records.Ball`."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -176,6 +178,28 @@ def entries(
     return tuple([Entry(name, unit, most, scale, signed) for name in names.split()])
 
 
+def record_of(vector: Iterable[Entry]) -> np.dtype[np.record]:
+    """Return the record as which compiled code fills in a vector, or a part of one, by entries' names."""
+    fields = np.dtype([(entry.name, np.float64) for entry in vector])
+    return cast("np.dtype[np.record]", np.dtype((np.record, fields)))
+
+
+class _Robot(NamedTuple):
+    x: float
+    y: float
+    heading: float
+    vx: float
+    vy: float
+    omega: float
+
+
+class _Ball(NamedTuple):
+    x: float
+    y: float
+    vx: float
+    vy: float
+
+
 def kinematics(r: RobotState) -> Row:
     """Return a robot as observations take it."""
     # Whole numbers would make numba compile a version of their own.
@@ -186,3 +210,25 @@ def motion(frame: Frame) -> Row:
     """Return the ball as observations take it."""
     ball = frame.ball
     return (float(ball.x), float(ball.y), float(ball.vx), float(ball.vy))
+
+
+@compilable
+def robot_named(numbers: Row) -> Robot:
+    """Return :func:`kinematics` by name; numba finds the type of a plain tuple faster when Python calls."""
+    named: Any = _Robot(*numbers)
+    robot: Robot = named
+    return robot
+
+
+@compilable
+def ball_named(numbers: Row) -> Ball:
+    """Return :func:`motion` by name."""
+    named: Any = _Ball(*numbers)
+    ball: Ball = named
+    return ball
+
+
+@compilable
+def turned(c: float, s: float, x: float, y: float) -> Point:
+    """Return a vector as seen along a direction with this cosine and sine: ahead, and to the left."""
+    return c * x + s * y, c * y - s * x

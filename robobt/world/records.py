@@ -42,6 +42,13 @@ class Ball(Protocol):
     vy: float
 
 
+class Place(Protocol):
+    """A point of the field [m]."""
+
+    x: float
+    y: float
+
+
 class Limits(Protocol):
     """What driving needs of :class:`~robobt.world.limits.RobotLimits`, by the same names."""
 
@@ -141,6 +148,7 @@ class Trip(Protocol):
 
 
 ROBOT, BALL, LIMITS = record_dtype(Robot), record_dtype(Ball), record_dtype(Limits)
+PLACE = record_dtype(Place)
 MOVER, MEETING = record_dtype(Mover), record_dtype(Meeting)
 SCENE, TRIP = record_dtype(Scene), record_dtype(Trip)
 

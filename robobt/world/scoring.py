@@ -3,12 +3,24 @@
 from __future__ import annotations
 
 from math import atan2, copysign, cos, hypot, sin
+from typing import Any
 
 import numpy as np
 
-from robobt.world.compiled import compiled
+from robobt.world.compiled import compiled, compiled_lean
 from robobt.world.geometry import FloatArray
-from robobt.world.observation import ObservationSpec, Row, entries, kinematics, motion
+from robobt.world.observation import (
+    ObservationSpec,
+    Row,
+    ball_named,
+    entries,
+    kinematics,
+    motion,
+    record_of,
+    robot_named,
+    turned,
+)
+from robobt.world.records import BALL, ROBOT, Ball, Robot
 from robobt.world.state import Frame, RobotState
 
 KICK_SPEED = 6.0
@@ -48,34 +60,31 @@ is, at most half as much.
 """
 
 
-@compiled
+_SEEN, _SIZE = record_of(SCORE_ON_GOALKEEPER.entries), SCORE_ON_GOALKEEPER.size
+
+
+@compiled_lean
 def _observe_scoring(
-    robot: Row, ball: Row, keeper: Row, goal_x: float, post_y: float, row: FloatArray
+    robot: Robot, ball: Ball, keeper: Robot, goal_x: float, post_y: float, seen: Any
 ) -> None:
-    c, s = cos(robot[2]), sin(robot[2])
-    to_goal = atan2(-robot[1], goal_x - robot[0]) - robot[2]
-    row[0] = c * robot[3] + s * robot[4]
-    row[1] = c * robot[4] - s * robot[3]
-    row[2] = robot[5]
-    row[7] = sin(to_goal)
-    row[8] = cos(to_goal)
-    for entry, x, y in (
-        (3, ball[0] - robot[0], ball[1] - robot[1]),
-        (5, ball[2], ball[3]),
-        (9, goal_x - robot[0], post_y - robot[1]),
-        (11, goal_x - robot[0], -post_y - robot[1]),
-        (13, keeper[0] - robot[0], keeper[1] - robot[1]),
-        (15, keeper[3], keeper[4]),
-    ):
-        row[entry] = c * x + s * y
-        row[entry + 1] = c * y - s * x
+    c, s = cos(robot.heading), sin(robot.heading)
+    to_goal = atan2(-robot.y, goal_x - robot.x) - robot.heading
+    seen.vx, seen.vy = turned(c, s, robot.vx, robot.vy)
+    seen.omega = robot.omega
+    seen.ball_x, seen.ball_y = turned(c, s, ball.x - robot.x, ball.y - robot.y)
+    seen.ball_vx, seen.ball_vy = turned(c, s, ball.vx, ball.vy)
+    seen.sin_goal, seen.cos_goal = sin(to_goal), cos(to_goal)
+    seen.upper_post_x, seen.upper_post_y = turned(c, s, goal_x - robot.x, post_y - robot.y)
+    seen.lower_post_x, seen.lower_post_y = turned(c, s, goal_x - robot.x, -post_y - robot.y)
+    seen.keeper_x, seen.keeper_y = turned(c, s, keeper.x - robot.x, keeper.y - robot.y)
+    seen.keeper_vx, seen.keeper_vy = turned(c, s, keeper.vx, keeper.vy)
     # A kicked ball keeps the velocity that it has across the heading.
-    vx, vy = KICK_SPEED * c - row[6] * s, KICK_SPEED * s + row[6] * c
+    vx, vy = KICK_SPEED * c - seen.ball_vy * s, KICK_SPEED * s + seen.ball_vy * c
     fast = hypot(vx, vy)
-    crosses = ball[1] + (goal_x - ball[0]) * vy / vx if vx > 0.1 * fast else copysign(FAR_OFF, vy)
-    aside = ((keeper[1] - ball[1]) * vx - (keeper[0] - ball[0]) * vy) / fast
-    row[17] = min(max(crosses, -FAR_OFF), FAR_OFF)
-    row[18] = min(max(aside, -0.5 * FAR_OFF), 0.5 * FAR_OFF)
+    crosses = ball.y + (goal_x - ball.x) * vy / vx if vx > 0.1 * fast else copysign(FAR_OFF, vy)
+    aside = ((keeper.y - ball.y) * vx - (keeper.x - ball.x) * vy) / fast
+    seen.aim = min(max(crosses, -FAR_OFF), FAR_OFF)
+    seen.keeper_aside = min(max(aside, -0.5 * FAR_OFF), 0.5 * FAR_OFF)
 
 
 @compiled
@@ -86,9 +95,10 @@ def score_on_goalkeeper_rows(
 
     ``robots`` (n, 2, 6) are attacker and goalkeeper; the rest is as for :func:`shoot_rows`.
     """
-    rows = np.empty((len(robots), 19))
-    for i in range(len(robots)):
-        _observe_scoring(robots[i, 0], balls[i], robots[i, 1], goal_x, post_y, rows[i])
+    rows = np.empty((len(robots), _SIZE))
+    each, rolling, seen = robots.view(ROBOT)[..., 0], balls.view(BALL)[:, 0], rows.view(_SEEN)[:, 0]
+    for i in range(len(rows)):
+        _observe_scoring(each[i, 0], rolling[i], each[i, 1], goal_x, post_y, seen[i])
     return rows
 
 
@@ -98,7 +108,7 @@ def score_on_goalkeeper_of(frame: Frame, robot: RobotState) -> FloatArray:
     The goalkeeper is whom the game's state names, else the opponent nearest to the middle of its goal;
     without any it is as if one stood there.
     """
-    field, row = frame.field, np.empty(19)
+    field, row = frame.field, np.empty(_SIZE)
     goal_x, half_goal = field.half_length, field.goal_width / 2
     keeper: Row = (goal_x, 0.0, 0.0, 0.0, 0.0, 0.0)
     if frame.opponents:
@@ -107,5 +117,11 @@ def score_on_goalkeeper_of(frame: Frame, robot: RobotState) -> FloatArray:
             frame.opponents, key=lambda other: (other.id != named, hypot(other.x - goal_x, other.y))
         )
         keeper = kinematics(nearest)
-    _observe_scoring(kinematics(robot), motion(frame), keeper, goal_x, half_goal, row)
+    _scoring_row(kinematics(robot), motion(frame), keeper, goal_x, half_goal, row)
     return row
+
+
+@compiled
+def _scoring_row(robot: Row, ball: Row, keeper: Row, goal_x: float, post_y: float, row: FloatArray) -> None:
+    me, opponent, seen = robot_named(robot), robot_named(keeper), row.view(_SEEN)[0]
+    _observe_scoring(me, ball_named(ball), opponent, goal_x, post_y, seen)

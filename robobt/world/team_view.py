@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from math import copysign, cos, hypot, inf, sin
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from robobt.world.compiled import compiled, compiled_lean
-from robobt.world.geometry import FloatArray
-from robobt.world.observation import ObservationSpec, entries, kinematics, motion
+from robobt.world.compiled import compilable, compiled, compiled_lean
+from robobt.world.geometry import FloatArray, Point
+from robobt.world.observation import ObservationSpec, entries, kinematics, motion, record_of, turned
+from robobt.world.records import BALL as BALL_RECORD
+from robobt.world.records import ROBOT, Ball, Robot
 from robobt.world.scoring import FAR_OFF, KICK_SPEED
 from robobt.world.state import Frame, RobotState
 
@@ -39,6 +43,7 @@ _ITSELF = (
 )
 """What it sees of itself, the ball and both goals."""
 
+_SEEN = record_of(_ITSELF)
 _OWN, _EACH = len(_ITSELF), 4
 _TOLD = ("", "_restarts", "_restarts_double_touch")
 """Ends of the name: whether it tells of no restarts, of whose ball it is, or also of who may not touch it."""
@@ -135,88 +140,91 @@ def team_view_rows(
         post_y: distance of the posts from the field's long axis [m].
         told: how many entries of restarts follow each, left at 0.
     """
-    size = _OWN + _EACH * (mates + opponents) + told
-    rows = np.empty((len(robots), len(who) * size))
+    places = _Places(mates, opponents, told)
+    rows = np.empty((len(robots), len(who) * _size(places)))
     away = np.empty(mates + opponents)
-    _fill_rows(robots, balls, who, blue, mates, opponents, goal_x, post_y, size, away, rows)
+    everybody, rolling = robots.view(ROBOT)[..., 0], balls.view(BALL_RECORD)[..., 0]
+    _fill_rows(everybody, rolling, who, blue, places, (goal_x, post_y), away, rows)
     return rows
+
+
+class _Places(NamedTuple):
+    """For how many mates and opponents there are places, and how many entries tell of restarts."""
+
+    mates: int
+    opponents: int
+    told: int
+
+
+@compiled_lean
+def _size(places: _Places) -> int:
+    return _OWN + _EACH * (places.mates + places.opponents) + places.told
 
 
 @compiled_lean
 def _fill_rows(
-    robots: FloatArray,
-    balls: FloatArray,
+    robots: NDArray[np.record],
+    balls: NDArray[np.record],
     who: NDArray[np.int64],
     blue: int,
-    mates: int,
-    opponents: int,
-    goal_x: float,
-    post_y: float,
-    size: int,
+    places: _Places,
+    goal: Point,
     away: FloatArray,
     rows: FloatArray,
 ) -> None:
-    seen = _OWN + _EACH * (mates + opponents)
+    size = _size(places)
+    seen = size - places.told
     for i in range(len(robots)):
         for k in range(len(who)):
             row = rows[i, k * size : (k + 1) * size]
             index = who[k]
             first, last = (0, blue) if index < blue else (blue, robots.shape[1])
             row[seen:] = 0.0
-            middle = _OWN + _EACH * mates
-            c, s = _observe(robots[i], balls[i], index, first, last, goal_x, post_y, row)
-            _nearest(robots[i], index, first, last, True, c, s, away[:mates], row[_OWN:middle])
-            _nearest(robots[i], index, first, last, False, c, s, away[mates:], row[middle:seen])
+            c, s = _observe(robots[i], balls[i], index, first, last, goal, row)
+            others: Any = row[_OWN:seen].view(BALL_RECORD)
+            mates, opponents = others[: places.mates], others[places.mates :]
+            _nearest(robots[i], index, first, last, True, c, s, away[: places.mates], mates)
+            _nearest(robots[i], index, first, last, False, c, s, away[places.mates :], opponents)
 
 
 @compiled_lean
 def _observe(
-    robots: FloatArray,
-    ball: FloatArray,
-    index: int,
-    first: int,
-    last: int,
-    goal_x: float,
-    post_y: float,
-    row: FloatArray,
-) -> tuple[float, float]:
+    robots: Sequence[Robot], ball: Ball, index: int, first: int, last: int, goal: Point, row: FloatArray
+) -> Point:
     """Fill in what is no robot; return cosine and sine of the heading."""
     me, sign = robots[index], 1.0 if first == 0 else -1.0
-    c, s = cos(me[2]), sin(me[2])
-    goal, left = sign * goal_x, sign * post_y
-    row[2] = me[5]
-    row[3], row[4], row[5], row[6] = sign * me[0], sign * me[1], sign * c, sign * s
-    for entry, x, y in (
-        (0, me[3], me[4]),
-        (7, ball[0] - me[0], ball[1] - me[1]),
-        (9, ball[2], ball[3]),
-        (11, goal - me[0], left - me[1]),
-        (13, goal - me[0], -left - me[1]),
-        (15, -goal - me[0], -me[1]),
-    ):
-        row[entry] = c * x + s * y
-        row[entry + 1] = c * y - s * x
+    c, s = cos(me.heading), sin(me.heading)
+    goal_x, left = sign * goal[0], sign * goal[1]
+    seen = row[:_OWN].view(_SEEN)[0]
+    seen.vx, seen.vy = turned(c, s, me.vx, me.vy)
+    seen.omega = me.omega
+    seen.x, seen.y, seen.cos_heading, seen.sin_heading = sign * me.x, sign * me.y, sign * c, sign * s
+    seen.ball_x, seen.ball_y = turned(c, s, ball.x - me.x, ball.y - me.y)
+    seen.ball_vx, seen.ball_vy = turned(c, s, ball.vx, ball.vy)
+    seen.left_post_x, seen.left_post_y = turned(c, s, goal_x - me.x, left - me.y)
+    seen.right_post_x, seen.right_post_y = turned(c, s, goal_x - me.x, -left - me.y)
+    seen.own_goal_x, seen.own_goal_y = turned(c, s, -goal_x - me.x, -me.y)
     # A kicked ball keeps the velocity that it has across the heading.
-    vx, vy = KICK_SPEED * c - row[10] * s, KICK_SPEED * s + row[10] * c
+    vx, vy = KICK_SPEED * c - seen.ball_vy * s, KICK_SPEED * s + seen.ball_vy * c
     fast = hypot(vx, vy)
     ahead = sign * vx > 0.1 * fast
-    crosses = sign * (ball[1] + (goal - ball[0]) * vy / vx) if ahead else copysign(FAR_OFF, sign * vy)
-    row[17] = min(max(crosses, -FAR_OFF), FAR_OFF)
+    crosses = sign * (ball.y + (goal_x - ball.x) * vy / vx) if ahead else copysign(FAR_OFF, sign * vy)
+    seen.aim = min(max(crosses, -FAR_OFF), FAR_OFF)
     lane = 0.5 * FAR_OFF
-    for r in range(len(robots)):
+    for r, robot in enumerate(robots):
         if first <= r < last:
             continue
-        dx, dy = robots[r, 0] - ball[0], robots[r, 1] - ball[1]
+        dx, dy = robot.x - ball.x, robot.y - ball.y
         aside = (dy * vx - dx * vy) / fast
         if dx * vx + dy * vy > 0.0 and abs(aside) < abs(lane):
             lane = aside
-    row[18] = lane
+    seen.lane = lane
     return c, s
 
 
 @compiled_lean
 def _nearest(
-    robots: FloatArray,
+    robots: Sequence[Robot],
     index: int,
     first: int,
     last: int,
@@ -224,20 +232,18 @@ def _nearest(
     c: float,
     s: float,
     away: FloatArray,
-    places: FloatArray,
+    places: Sequence[Ball],
 ) -> None:
     """Fill the places, one after the other, with the nearest mates, or opponents, of a robot."""
     me = robots[index]
     for place in range(len(away)):
         away[place] = inf
-        places[_EACH * place] = -AWAY
-        for entry in range(1, _EACH):
-            places[_EACH * place + entry] = 0.0
-    for r in range(len(robots)):
+        empty = places[place]
+        empty.x, empty.y, empty.vx, empty.vy = -AWAY, 0.0, 0.0, 0.0
+    for r, other in enumerate(robots):
         if r == index or (first <= r < last) != mates:
             continue
-        other = robots[r]
-        dx, dy = other[0] - me[0], other[1] - me[1]
+        dx, dy = other.x - me.x, other.y - me.y
         far = dx * dx + dy * dy
         # Insert it behind those that are as near, and move the farther ones on.
         place = len(away)
@@ -245,11 +251,14 @@ def _nearest(
             place -= 1
             if place + 1 < len(away):
                 away[place + 1] = away[place]
-                for entry in range(_EACH * place, _EACH * (place + 1)):
-                    places[entry + _EACH] = places[entry]
+                _copy(places[place], places[place + 1])
         if place < len(away):
             away[place] = far
-            entry = _EACH * place
-            places[entry], places[entry + 1] = c * dx + s * dy, c * dy - s * dx
-            places[entry + 2] = c * other[3] + s * other[4]
-            places[entry + 3] = c * other[4] - s * other[3]
+            seen = places[place]
+            seen.x, seen.y = turned(c, s, dx, dy)
+            seen.vx, seen.vy = turned(c, s, other.vx, other.vy)
+
+
+@compilable
+def _copy(here: Ball, there: Ball) -> None:
+    there.x, there.y, there.vx, there.vy = here.x, here.y, here.vx, here.vy

@@ -44,7 +44,8 @@ def eq_4(shooter: np.ndarray, target: np.ndarray, opponent: np.ndarray) -> np.nd
 
 
 def go_to_ball(robot: np.ndarray | list[float], ball: np.ndarray | list[float]) -> np.ndarray:
-    return go_to_ball_rows(np.array([robot], dtype=float), np.array([ball], dtype=float), 4.5, 6)[0]
+    resting = np.array([[*ball, 0.0, 0.0]], dtype=float)
+    return go_to_ball_rows(np.array([robot], dtype=float), resting, 4.5, 6)[0]
 
 
 def shoot(robot: np.ndarray | list[float], ball: np.ndarray | list[float]) -> np.ndarray:
@@ -73,7 +74,7 @@ def test_eq_4_does_not_change_when_the_field_is_turned_moved_or_mirrored(
 
 def test_going_to_the_ball_to_shoot_shows_the_goal_too() -> None:
     # Heading up the y axis; from the ball at (2, 2.5) m the goal's middle lies 45 degrees to the right of +x.
-    robot, ball = np.array([[0.0, 0.0, pi / 2, 1.0, 0.0, 0.3]]), np.array([[2.0, 2.5]])
+    robot, ball = np.array([[0.0, 0.0, pi / 2, 1.0, 0.0, 0.3]]), np.array([[2.0, 2.5, 0.0, 0.0]])
     (found,) = go_to_ball_rows(robot, ball, 4.5, 8)
     np.testing.assert_allclose(found[:6], go_to_ball_rows(robot, ball, 4.5, 6)[0])
     np.testing.assert_allclose(found[6:], [-sqrt(0.5), -sqrt(0.5)])
@@ -145,11 +146,11 @@ def test_no_distance_gives_no_nan() -> None:
 
 
 def test_a_row_has_as_many_entries_as_its_specification() -> None:
-    ones = np.ones((1, 6))
-    assert go_to_ball_rows(ones, ones, 4.5, 6).shape == (1, GO_TO_BALL.size)
-    assert shoot_rows(ones, ones, 4.5, 0.5).shape == (1, SHOOT.size)
-    assert shot_features(np.ones(2), ones, ones).shape == (1, 1, SHOT.size)
-    assert shot_scene(ones, ones, ones, ones[None]).shape == (1, SHOT_SCENE.size)
+    robots, balls, points = np.ones((1, 6)), np.ones((1, 4)), np.ones((1, 2))
+    assert go_to_ball_rows(robots, balls, 4.5, 6).shape == (1, GO_TO_BALL.size)
+    assert shoot_rows(robots, balls, 4.5, 0.5).shape == (1, SHOOT.size)
+    assert shot_features(np.ones(2), points, points).shape == (1, 1, SHOT.size)
+    assert shot_scene(robots, balls, points, robots[None]).shape == (1, SHOT_SCENE.size)
 
 
 def test_every_observation_names_its_entries_once() -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from functools import lru_cache
 from math import cos, hypot, pi, sin
-from typing import Any, NamedTuple, Protocol
+from typing import NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -155,7 +155,7 @@ def _rate(
     numbers: FloatArray,
 ) -> NDArray[np.record]:
     """Rate passes to points (G, 2) of the robots ``owners``; return the best to each, :class:`_Rated`."""
-    rated: Any = np.zeros(len(points), dtype=_RATED)
+    rated = np.zeros(len(points), dtype=_RATED)
     tactics: AppliedTactics = numbers.view(TACTICS)[0]
     own, opponents = mover_records(own_), mover_records(opponents_)
     for g in range(len(points)):
@@ -211,8 +211,7 @@ def _rate(
             if score > best.score:
                 best.score, best.speed, best.wait = score, speed, max(0.0, ready - flight)
                 best.chip = 1.0 if kind == _CHIPPED else 0.0
-    found: NDArray[np.record] = rated
-    return found
+    return rated
 
 
 @compiled

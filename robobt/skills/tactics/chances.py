@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from math import atan2, cos, hypot, pi, sin, sqrt
-from typing import NamedTuple, Protocol
+from typing import NamedTuple
 
 import numpy as np
 
@@ -21,9 +21,9 @@ from robobt.skills.tactics.lanes import (
     time_to_pass,
 )
 from robobt.skills.tactics_settings import TACTICS, AppliedTactics
-from robobt.world.compiled import compiled, record_dtype, records
+from robobt.world.compiled import compiled, records
 from robobt.world.geometry import FloatArray, Point
-from robobt.world.records import MOVER_SIZE, Mover, mover_records
+from robobt.world.records import MOVER_SIZE, PLACE, Mover, Place, mover_records
 from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS
 
 _BODY = ROBOT_RADIUS + BALL_RADIUS
@@ -37,14 +37,6 @@ class AimedShot(NamedTuple):
     chance: float
     y: float
     half_angle: float
-
-
-class _Place(Protocol):
-    x: float
-    y: float
-
-
-_PLACE = record_dtype(_Place)
 
 
 @compiled
@@ -80,9 +72,9 @@ def shot_chance(
 @compiled
 def _between(
     x: float, y: float, delay: float, opponents: Sequence[Mover], tactics: AppliedTactics
-) -> Sequence[_Place]:
+) -> Sequence[Place]:
     """Return where opponents are at the kick: those near their goal between its middle and (x, y)."""
-    where: Sequence[_Place] = records(len(opponents), _PLACE)
+    where: Sequence[Place] = records(len(opponents), PLACE)
     goal_x = tactics.half_length
     gx, gy = goal_x - x, -y
     to_goal = hypot(gx, gy)
@@ -109,7 +101,7 @@ def _room(
     y: float,
     aim: float,
     delay: float,
-    where: Sequence[_Place],
+    where: Sequence[Place],
     opponents: Sequence[Mover],
     tactics: AppliedTactics,
 ) -> float:
