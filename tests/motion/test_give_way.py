@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from math import hypot
 
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -40,6 +41,14 @@ def test_a_robot_brakes_before_one_that_stands_in_its_way() -> None:
 def test_it_stops_for_one_that_comes_at_full_speed() -> None:
     oncoming = robot(0.8, 0.0, velocity=(-3.0, 0.0, 0.0))
     assert order(robot(number=1), oncoming).vx == 0.0
+
+
+def test_a_mate_is_touched_more_gently_than_an_opponent() -> None:
+    here = record(robot(number=1))
+    at_it = mover_records(movers([robot(0.18, 0.0)]))
+    opponent, mate = (slowed_towards(here, (3.0, 0.0), at_it, -1, mates) for mates in (0, 1))
+    assert opponent == pytest.approx((1.0, 0.0))
+    assert mate == pytest.approx((0.3, 0.0))
 
 
 def test_what_passes_by_or_is_far_away_does_not_matter() -> None:

@@ -44,6 +44,15 @@ def test_it_may_drive_along_the_area() -> None:
     assert me.x == pytest.approx(-3.38, abs=0.02)
 
 
+def test_who_is_hardly_too_fast_may_speed_up_along_the_area_and_who_is_much_too_fast_only_brakes() -> None:
+    along = []
+    for inwards in (1.27, 1.6):
+        me = robot(-3.0, 0.0, velocity=(-inwards, 0.0, 0.0))
+        along.append(keep_out(frame(me, (-3.0, 0.2), game=OPEN), me, RobotCommand(-1.5, 1.5)).vy)
+    assert along[0] > 1.2
+    assert along[1] == pytest.approx(0.0, abs=1e-9)
+
+
 def test_who_was_shoved_in_drives_out() -> None:
     assert gap(drives(robot(-3.56, 0.0), 0.0, 0.0), Team.BLUE) >= 0.08
 

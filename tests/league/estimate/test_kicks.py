@@ -115,6 +115,16 @@ def test_a_kick_while_the_ball_is_hidden_is_seen_afterwards() -> None:
     assert kick.time <= 0.4
 
 
+def test_a_ball_that_starts_off_fast_but_is_stopped_at_once_was_not_kicked() -> None:
+    scene = Scene(sent=[(0.0, KICK)])
+    for i in range(61):
+        time = i * PERIOD
+        # 4 cm at 2.5 m/s, then on at 0.2 m/s, as when it hits somebody.
+        fast = min(max(0.0, time - 0.3), 0.016)
+        scene.see(time, MOUTH + 2.5 * fast + 0.2 * max(0.0, time - 0.316))
+    assert scene.kicks == []
+
+
 def test_two_kicks_in_a_row_are_two() -> None:
     scene = Scene(sent=[(0.0, KICK)])
     scene.shot(0.3, 5.0)

@@ -89,6 +89,14 @@ def test_a_weak_ball_beside_the_one_in_play_is_left_out(seen: Seen) -> None:
         assert seen.ball_is_at(0.0, 0.0, 0.005)
 
 
+def test_of_two_balls_that_are_seen_as_surely_the_nearer_is_the_one_in_play(seen: Seen) -> None:
+    seen.see_for(60, lambda _: [(0.0, 0.0, 0.9)])
+    for i in range(20):
+        balls = [(0.005, 0.0, 0.9), (0.04, 0.0, 0.9)]
+        seen.see(balls if i % 2 else balls[::-1])
+        assert seen.ball_is_at(0.005, 0.0, 0.01)
+
+
 def test_a_spare_ball_that_two_cameras_see_does_not_win_against_the_one_in_play(seen: Seen) -> None:
     seen.see_for(60, lambda _: [(2.0, 1.0, 0.9)])
     for _ in range(180):

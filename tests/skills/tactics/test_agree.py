@@ -8,13 +8,17 @@ import pytest
 
 from robobt.skills.aims import Pass
 from robobt.skills.plan import Omitted, Task
+from robobt.skills.tactics.agree import pass_under_way
+from robobt.skills.tactics.attacker import NOBODY, Candidate, choose_attacker
 from robobt.skills.tactics.chances import rate_points
+from robobt.skills.tactics_settings import DEFAULT_TACTICS, applied
 from robobt.world import DIVISION_B, RobotLimits, Team
+from robobt.world.ball_model import DEFAULT_BALL
 from robobt.world.geometry import Point, distance
 from robobt.world.records import MOVER
 from robobt.world.rules import in_own_defense_area, in_their_defense_area
-from tests.skills.fixed_world import held, robot
-from tests.skills.refereed import free_kick, penalty, penalty_in_play
+from tests.skills.fixed_world import frame, held, robot
+from tests.skills.refereed import OPEN, free_kick, penalty, penalty_in_play
 from tests.skills.tactics.teams import SIX, THEIRS, Agreement
 
 
@@ -47,6 +51,25 @@ def test_a_pass_under_way_belongs_to_its_receiver() -> None:
     team.receiver, team.pass_target, team.pass_time = 5, (1.0, -1.5), 0.0
     agreement.at(0.3, (0.0, 0.0, 1.2, -1.7))
     assert team.attacker == 5
+
+
+@pytest.mark.parametrize(("later", "attacker"), [(0.2, 1), (0.6, 0)])
+def test_the_receiver_of_a_pass_takes_it_unless_another_is_there_long_before(
+    later: float, attacker: int
+) -> None:
+    numbers = applied(DEFAULT_TACTICS, DIVISION_B, DEFAULT_BALL)
+    candidates = np.array([Candidate(1.0, 0.0, False), Candidate(1.0 + later, 0.0, False)], dtype=float)
+    assert choose_attacker(candidates, 0.0, 2.0, 1, NOBODY, 0.0, False, numbers) == attacker
+
+
+def test_a_pass_that_an_opponent_has_got_is_no_longer_under_way() -> None:
+    agreement = Agreement()
+    team = agreement.team
+    team.receiver, team.pass_target, team.pass_time = 5, (1.0, -1.5), 0.0
+    thief = robot(0.4, -0.6, heading=pi, number=3, contact=True)
+    ball = (*held(thief), 0.8, -0.8)
+    assert pass_under_way(frame(SIX[0], ball, SIX[1:], THEIRS, 0.5, OPEN), team)
+    assert not pass_under_way(frame(SIX[0], ball, SIX[1:], (*THEIRS[:3], thief), 0.5, OPEN), team)
 
 
 def test_who_took_a_restart_leaves_the_ball_to_the_others() -> None:

@@ -83,6 +83,17 @@ def test_the_ball_waits_for_a_receiver_that_has_a_long_way() -> None:
     assert here.wait == 0.0
 
 
+def test_a_pass_that_has_to_wait_for_its_receiver_counts_less() -> None:
+    target = (-1.3, 1.6)
+    me = robot(-1.0, 0.0, heading=1.75, number=1, contact=True)
+    there, waiting = (
+        next(one for one in found((mate,), places={4: target}, me=me) if one.target == target)
+        for mate in (robot(*target, number=4), MATE)
+    )
+    assert waiting.wait > 0.2 > there.wait
+    assert waiting.score < 0.97 * there.score
+
+
 def test_the_last_pass_counts_more() -> None:
     last = found()[3]
     again = next(one for one in found(last=last) if one.target == last.target)

@@ -81,6 +81,11 @@ def test_a_ball_kicked_at_the_aim_leaves_where_it_should(vx: float, vy: float, w
     assert hypot(kick, sideways) < DEFAULT_TACTICS.fastest + 1e-9
 
 
+def test_a_shot_for_which_the_robot_has_to_turn_first_is_worth_less() -> None:
+    at_once, turning = (point_worth(x, 0.0, 2.5, 0.0, 0.8, NOBODY, APPLIED) for x in (3.5, 0.5))
+    assert at_once > turning + 0.1
+
+
 def test_the_ball_is_worth_more_near_the_goal_and_away_from_opponents() -> None:
     def worth(x: float, y: float, opponents: Sequence[Mover] = NOBODY) -> float:
         return point_worth(0.0, -2.0, x, y, 0.8, opponents, APPLIED)
