@@ -94,7 +94,8 @@ def fit_population(shots: FloatArray, goals: NDArray[np.int64]) -> Population:
         gained, least, place, p = least - found, found, tried, p_tried
         if gained < _ENOUGH:
             break
-    side = shots[:, 7] * np.sign(_across(shots))
+    *_, bearing = shots.T
+    side = bearing * np.sign(_across(shots))
     # Quantiles: a ball far aside is one that the robot had lost.
     low, middle, high = (float(np.quantile(side, share)) for share in (_LOW, 0.5, 1.0 - _LOW))
     found_bearing = {"bearing": middle, "bearing_spread": 0.5 * (high - low)}
@@ -117,10 +118,9 @@ def validate_population(
 
 def _across(shots: FloatArray) -> FloatArray:
     """Return how far goalkeepers stand beside the line ball -> target, to its left [m]."""
-    dx, dy = GOAL_LINE - shots[:, 0], shots[:, 2] - shots[:, 1]
-    across: FloatArray = (dx * (shots[:, 4] - shots[:, 1]) - dy * (shots[:, 3] - shots[:, 0])) / np.hypot(
-        dx, dy
-    )
+    x, y, target_y, keeper_x, keeper_y, *_ = shots.T
+    dx, dy = GOAL_LINE - x, target_y - y
+    across: FloatArray = (dx * (keeper_y - y) - dy * (keeper_x - x)) / np.hypot(dx, dy)
     return across
 
 

@@ -12,6 +12,7 @@ from robobt.config.atomic import write_atomically
 from robobt.config.errors import ConfigError
 from robobt.config.validation import Settings, first_problem
 from robobt.config.yaml import read_yaml, write_yaml
+from robobt.world.compiled import record_dtype
 from robobt.world.geometry import FloatArray
 
 REAL = Path(__file__).with_name("real.yaml")
@@ -40,6 +41,10 @@ class Traits(NamedTuple):
     kick_error: float
 
 
+TRAITS = record_dtype(Traits)
+"""The record of :class:`Traits`."""
+
+
 class Population(Settings):
     """How goalkeepers, and the kicks against them, are distributed.
 
@@ -65,7 +70,8 @@ class Population(Settings):
 
     def sample(self, rng: np.random.Generator) -> Traits:
         """Draw one goalkeeper and kick, whose error counts positive towards the goalkeeper."""
-        traits = Traits(*self.traits(rng.standard_normal((1, DIMENSIONS)))[0].tolist())
+        (drawn,) = self.traits(rng.standard_normal((1, DIMENSIONS))).tolist()
+        traits = Traits(*drawn)
         astray = self.kick_follows * rng.normal(self.bearing, self.bearing_spread)
         return traits._replace(kick_error=traits.kick_error + astray)
 
@@ -74,9 +80,10 @@ class Population(Settings):
         rows = np.empty((len(normal), len(Traits._fields)))
         medians = (self.max_speed, self.acceleration, self.braking, self.delay)
         rows[:, :4] = np.array(medians) * np.exp(self.spread * normal[:, :4])
-        rows[:, 4] = self.offset * normal[:, 4]
-        rows[:, 5] = self.kick_speed
-        rows[:, 6] = self.kick_error * normal[:, 5]
+        *_, beside, astray = normal.T
+        drawn = rows.view(TRAITS)[:, 0]
+        drawn["offset"], drawn["kick_speed"] = self.offset * beside, self.kick_speed
+        drawn["kick_error"] = self.kick_error * astray
         return rows
 
     def write(self, path: Path) -> None:

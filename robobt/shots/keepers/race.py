@@ -9,12 +9,14 @@ ball's way, too far out on a shot to the far post and too far in on one to the n
 from __future__ import annotations
 
 from math import atan2, cos, erf, sin, sqrt
+from typing import NamedTuple
 
 import numpy as np
 import pyarrow as pa
 
+from robobt.shots.keepers.population import TRAITS, Traits
 from robobt.sim.settings import PRESETS
-from robobt.world.compiled import compiled
+from robobt.world.compiled import compiled, record_dtype
 from robobt.world.field import DIVISION_B
 from robobt.world.geometry import FloatArray
 from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS
@@ -37,12 +39,32 @@ HELD = 0.11
 """Ball to robot's centre where the ball was not recorded [m]."""
 
 
-def race_inputs(table: pa.Table) -> FloatArray:
-    """Return what the race starts from, (n, 8).
+class Shot(NamedTuple):
+    """What the race starts from.
 
-    Ball x, y, target y, goalkeeper x, y, vx, vy in field coordinates [m, m/s], and the ball's
-    bearing off the line shooter -> target as the shooter sees it [rad].
+    Attributes:
+        x, y: of the ball [m].
+        target_y: where on the goal line the shot is aimed [m].
+        keeper_x, keeper_y, keeper_vx, keeper_vy: of the goalkeeper, in field coordinates [m, m/s].
+        bearing: the ball's off the line shooter -> target as the shooter sees it [rad].
     """
+
+    x: float
+    y: float
+    target_y: float
+    keeper_x: float
+    keeper_y: float
+    keeper_vx: float
+    keeper_vy: float
+    bearing: float
+
+
+SHOT = record_dtype(Shot)
+"""The record of a :class:`Shot`."""
+
+
+def race_inputs(table: pa.Table) -> FloatArray:
+    """Return what the race starts from, :data:`SHOT` (n, 8)."""
     column = {name: np.asarray(table.column(name).to_numpy(), dtype=np.float64) for name in _COLUMNS}
     angle, length = column["angle_to_goal"], column["distance_to_goal"]
     c, s = np.cos(angle), np.sin(angle)
@@ -65,15 +87,15 @@ def race_inputs(table: pa.Table) -> FloatArray:
 
 
 @compiled
-def _nearest(shot: FloatArray, traits: FloatArray, c: float, s: float) -> float:
+def _nearest(shot: Shot, traits: Traits, c: float, s: float) -> float:
     """Return how near the ball, kicked along (c, s), comes to the goalkeeper before the goal line [m]."""
-    px, py, _, kx, ky, vx, vy, _ = shot
-    max_speed, acceleration, braking, delay, _, speed, _ = traits
+    px, py, kx, ky, vx, vy = shot.x, shot.y, shot.keeper_x, shot.keeper_y, shot.keeper_vx, shot.keeper_vy
+    max_speed, speed = traits.max_speed, traits.kick_speed
     end_x, end_y = GOAL_LINE - ROBOT_RADIUS, py + (GOAL_LINE - px) * s / c
-    rolling, most = SWITCH * speed, acceleration * STEP
+    rolling, most = SWITCH * speed, traits.acceleration * STEP
     time, nearest, gap = 0.0, 99.0, 99.0
     while px < GOAL_LINE + BALL_RADIUS and gap <= nearest + REACH and speed > 0.0:
-        if time >= delay:
+        if time >= traits.delay:
             # To the nearest point of what is left of the ball's way, by the root of the distance.
             dx, dy = end_x - px, end_y - py
             squared = dx * dx + dy * dy
@@ -81,7 +103,7 @@ def _nearest(shot: FloatArray, traits: FloatArray, c: float, s: float) -> float:
             share = min(1.0, max(0.0, share))
             gx, gy = px + share * dx - kx, py + share * dy - ky
             left = sqrt(gx * gx + gy * gy) + 1e-9
-            scale = min(max_speed, sqrt(2.0 * braking * max(left - THERE, 0.0))) / left
+            scale = min(max_speed, sqrt(2.0 * traits.braking * max(left - THERE, 0.0))) / left
             ax, ay = scale * gx - vx, scale * gy - vy
             squared = ax * ax + ay * ay
             if squared > most * most:
@@ -101,22 +123,23 @@ def _nearest(shot: FloatArray, traits: FloatArray, c: float, s: float) -> float:
 
 
 @compiled
-def goal_chances(shots: FloatArray, traits: FloatArray, offset: float, follows: float) -> FloatArray:
+def goal_chances(shots_: FloatArray, traits_: FloatArray, offset: float, follows: float) -> FloatArray:
     """Compute the probability of a goal of every shot, (n,), over a sample of goalkeepers.
 
     Args:
-        shots: (n, 8) of :func:`race_inputs`.
-        traits: (m, 7) rows of :class:`~robobt.shots.keepers.population.Traits`; their offset is left out.
+        shots_: (n, 8) of :func:`race_inputs`.
+        traits_: (m, 7) :data:`~robobt.shots.keepers.population.TRAITS`; their offset is left out.
         offset: standard deviation of the offset, over which the chance is worked out exactly [m].
         follows: share of the ball's bearing off the aim by which the kick goes astray.
     """
+    shots, traits = shots_.view(SHOT)[:, 0], traits_.view(TRAITS)[:, 0]
     chances = np.zeros(len(shots))
     blur = sqrt(2.0) * max(offset, LEAST_OFFSET)
-    for i in range(len(shots)):
-        aim = atan2(shots[i, 2] - shots[i, 1], GOAL_LINE - shots[i, 0]) + follows * shots[i, 7]
-        for j in range(len(traits)):
-            c, s = cos(aim + traits[j, 6]), sin(aim + traits[j, 6])
-            if abs(c * shots[i, 1] + s * (GOAL_LINE - shots[i, 0])) < POST * c:
-                room = _nearest(shots[i], traits[j], c, s) - REACH
+    for i, shot in enumerate(shots):
+        aim = atan2(shot.target_y - shot.y, GOAL_LINE - shot.x) + follows * shot.bearing
+        for keeper in traits:
+            c, s = cos(aim + keeper.kick_error), sin(aim + keeper.kick_error)
+            if abs(c * shot.y + s * (GOAL_LINE - shot.x)) < POST * c:
+                room = _nearest(shot, keeper, c, s) - REACH
                 chances[i] += 0.5 * (1.0 + erf(room / blur))
     return chances / len(traits)
