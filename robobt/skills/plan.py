@@ -111,7 +111,7 @@ class Plan:
 
     def apply_tactics(self, geometry: FieldGeometry, model: BallModel) -> None:
         """Bring ``numbers`` up to the settings, on this field and with this ball."""
-        tactics, before = self.tactics, self._applied
+        tactics, (before, field_before, ball_before) = self.tactics, self._applied
         # By identity: to compare all settings in every frame takes longer than what follows from them.
-        if before[0] is not tactics or before[1] is not geometry or before[2] is not model:
+        if before is not tactics or field_before is not geometry or ball_before is not model:
             self.numbers, self._applied = applied(tactics, geometry, model), (tactics, geometry, model)

@@ -152,7 +152,7 @@ PLACE = record_dtype(Place)
 MOVER, MEETING = record_dtype(Mover), record_dtype(Meeting)
 SCENE, TRIP = record_dtype(Scene), record_dtype(Trip)
 
-ROBOT_SIZE, MOVER_SIZE = len(ROBOT.names or ()), len(MOVER.names or ())
+ROBOT_SIZE, BALL_SIZE, MOVER_SIZE = (len(kind.names or ()) for kind in (ROBOT, BALL, MOVER))
 """How many numbers they are."""
 
 _MOST_KNOWN = 256

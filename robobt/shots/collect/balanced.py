@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from functools import lru_cache
 from math import atan2, cos, hypot, pi, sin
-from typing import Literal
+from typing import Literal, NamedTuple
 
 import numpy as np
 
@@ -23,7 +23,7 @@ from robobt.match.scenario.starts import RobotStart
 from robobt.shots.collect.plan import CLOSE_RANGE, SHOT_SPEED, Attempt, CollectionSettings
 from robobt.skills.aim.raters.goal_line import POST_GAP
 from robobt.world.field import FieldGeometry
-from robobt.world.geometry import FloatArray, Point, direction
+from robobt.world.geometry import FloatArray, Point, direction, distance
 from robobt.world.rules import in_their_defense_area
 from robobt.world.state import ROBOT_RADIUS
 
@@ -59,10 +59,10 @@ def balanced_attempt(settings: CollectionSettings, trial: int) -> Attempt:
     variant = "still" if kind == "still" else ("mid_range", "close_range")[trial // len(kinds) % 2]
     base = _base(kind, _opponents(settings, trial))
     field = base.field
-    ball = _ball(field, variant, even[0], even[1])
+    ball = _ball(field, variant, even.range, even.bearing)
     usable = field.goal_width / 2.0 - POST_GAP
-    target = (field.half_length, (2.0 * even[4] - 1.0) * usable)
-    start, turn, at_once = ball, _TURN * (2.0 * even[5] - 1.0), rng.random() < _AT_ONCE
+    target = (field.half_length, (2.0 * even.target - 1.0) * usable)
+    start, turn, at_once = ball, _TURN * (2.0 * even.turn - 1.0), rng.random() < _AT_ONCE
     if kind == "motion":
         start = _before(field, ball, rng)
         heading = direction(start, ball) + 0.3 * turn
@@ -70,21 +70,22 @@ def balanced_attempt(settings: CollectionSettings, trial: int) -> Attempt:
         heading = direction(ball, target) + (0.02 * turn if at_once else turn)
     # While the attacker turns or comes, the goalkeeper moves to the line; it starts the farther off.
     widest = OFFSET if kind == "still" and at_once else 2.0 * OFFSET
-    keeper = keeper_start(field, ball, target, widest * (2.0 * even[2] - 1.0), even[3])
-    shooter = (start[0] - HELD_DISTANCE * cos(heading), start[1] - HELD_DISTANCE * sin(heading))
+    keeper = keeper_start(field, ball, target, widest * (2.0 * even.beside - 1.0), even.out)
+    shooter = held_by(start, heading)
     speed = (0.5, 1.0)[int(rng.integers(2))]
+    (_, target_y), (place_x, place_y) = target, ball
     params: dict[str, float] = {
-        "target_y": target[1],
-        "place_x": ball[0],
-        "place_y": ball[1],
+        "target_y": target_y,
+        "place_x": place_x,
+        "place_y": place_y,
         "dribble_speed": float(rng.uniform(*_SPEEDS)),
         "tolerance": float(rng.uniform(*_TOLERANCES)),
         "shot_speed": SHOT_SPEED,
     }
-    blue, yellow = base.robots.blue[0], base.robots.yellow
+    (blue, *_), (goalkeeper, *others) = base.robots.blue, base.robots.yellow
     taken = [shooter, start, keeper]
-    opponents = [moved(yellow[0], keeper, direction(keeper, start), flip=True, speed=speed)]
-    for setup in yellow[1:]:
+    opponents = [moved(goalkeeper, keeper, direction(keeper, start), flip=True, speed=speed)]
+    for setup in others:
         place = _blocker(field, ball, target, taken, rng)
         taken.append(place)
         opponents.append(moved(setup, place, direction(place, start), flip=True))
@@ -111,7 +112,25 @@ def _opponents(settings: CollectionSettings, trial: int) -> int:
     return 1 if more == 0 or group % 2 == 0 else 2 + group // 2 % more
 
 
-_DIMENSIONS = 6
+class _Even(NamedTuple):
+    """What a trial is to be even in, each 0 to 1.
+
+    Attributes:
+        range, bearing: of the ball.
+        beside, out: where the goalkeeper starts.
+        target: along the goal line.
+        turn: of the attacker.
+    """
+
+    range: float
+    bearing: float
+    beside: float
+    out: float
+    target: float
+    turn: float
+
+
+_DIMENSIONS = len(_Even._fields)
 
 
 @lru_cache(maxsize=8)
@@ -124,20 +143,19 @@ def _sequence(seed: int) -> tuple[FloatArray, FloatArray]:
     return np.random.default_rng([seed, 2]).random(_DIMENSIONS), steps
 
 
-def _even_point(seed: int, index: int) -> list[float]:
+def _even_point(seed: int, index: int) -> _Even:
     """Return point ``index`` of a sequence that fills the unit cube evenly.
 
     Source: Roberts, "The unreasonable effectiveness of quasirandom sequences", 2018.
     """
     start, steps = _sequence(seed)
-    point: list[float] = ((start + (index + 1) * steps) % 1.0).tolist()
-    return point
+    return _Even(*((start + (index + 1) * steps) % 1.0).tolist())
 
 
 @lru_cache(maxsize=16)
 def _base(kind: str, opponents: int) -> Scenario:
     scenario = load_scenario(f"collect_shots_{kind}")
-    keeper = scenario.robots.yellow[0]
+    keeper, *_ = scenario.robots.yellow
     defenders = [
         RobotSetup(
             number=number,
@@ -170,20 +188,27 @@ def _ball(field: FieldGeometry, variant: str, range_: float, angle: float) -> Po
 
 def keeper_start(field: FieldGeometry, ball: Point, target: Point, offset: float, out: float) -> Point:
     """Place a goalkeeper beside the line of the shot by ``offset``, ``out`` of the way out of its goal."""
-    x = field.half_length - (_OUT[0] + out * (_OUT[1] - _OUT[0]))
-    beside = offset
+    (least, most), (ball_x, ball_y) = _OUT, ball
+    line = field.half_length - (least + out * (most - least))
     aim = direction(ball, target)
-    along = (x - ball[0]) / cos(aim) if cos(aim) > 0.05 else hypot(target[0] - ball[0], target[1] - ball[1])
-    place = [ball[0] + along * cos(aim) - beside * sin(aim), ball[1] + along * sin(aim) + beside * cos(aim)]
+    along = (line - ball_x) / cos(aim) if cos(aim) > 0.05 else distance(ball, target)
+    x = ball_x + along * cos(aim) - offset * sin(aim)
+    y = ball_y + along * sin(aim) + offset * cos(aim)
     reach = field.defense_width / 2.0 - ROBOT_RADIUS
-    place[0] = min(field.half_length - 0.02, max(field.half_length - field.defense_depth, place[0]))
-    place[1] = min(reach, max(-reach, place[1]))
-    gap = hypot(place[0] - ball[0], place[1] - ball[1])
+    x = min(field.half_length - 0.02, max(field.half_length - field.defense_depth, x))
+    y = min(reach, max(-reach, y))
+    gap = hypot(x - ball_x, y - ball_y)
     if gap < _GAP:
         # Straight towards the goal, out of the ball's way.
-        home = direction((place[0], place[1]), field.their_goal)
-        place = [place[0] + (_GAP - gap) * cos(home), place[1] + (_GAP - gap) * sin(home)]
-    return (place[0], place[1])
+        home = direction((x, y), field.their_goal)
+        x, y = x + (_GAP - gap) * cos(home), y + (_GAP - gap) * sin(home)
+    return (x, y)
+
+
+def held_by(ball: Point, heading: float) -> Point:
+    """Return where a robot stands that looks along ``heading`` with the ball in its mouth."""
+    x, y = ball
+    return (x - HELD_DISTANCE * cos(heading), y - HELD_DISTANCE * sin(heading))
 
 
 def _before(field: FieldGeometry, ball: Point, rng: np.random.Generator) -> Point:
@@ -192,18 +217,20 @@ def _before(field: FieldGeometry, ball: Point, rng: np.random.Generator) -> Poin
     travel = float(rng.uniform(*_TRAVEL))
     bearing = outward + float(rng.uniform(-0.5 * pi, 0.5 * pi))
     edge = field.half_width - 0.2
-    y = min(edge, max(-edge, ball[1] + travel * sin(bearing)))
-    return (min(field.half_length - 0.3, ball[0] + travel * cos(bearing)), y)
+    x, y = ball
+    y = min(edge, max(-edge, y + travel * sin(bearing)))
+    return (min(field.half_length - 0.3, x + travel * cos(bearing)), y)
 
 
 def _blocker(
     field: FieldGeometry, ball: Point, target: Point, taken: list[Point], rng: np.random.Generator
 ) -> Point:
     """Return a place for one more opponent, half of them near the line of the shot."""
+    (ball_x, ball_y), (target_x, target_y) = ball, target
     while True:
         share, aside = float(rng.uniform(0.1, 0.95)), float(rng.normal(0.0, 0.4))
-        x = ball[0] + share * (target[0] - ball[0])
-        y = ball[1] + share * (target[1] - ball[1])
+        x = ball_x + share * (target_x - ball_x)
+        y = ball_y + share * (target_y - ball_y)
         if rng.random() < 0.5:
             aim = direction(ball, target)
             x, y = x - aside * sin(aim), y + aside * cos(aim)
@@ -220,7 +247,9 @@ def moved(
     setup: RobotSetup, place: Point, heading: float, *, flip: bool = False, speed: float | None = None
 ) -> RobotSetup:
     """Start a robot elsewhere; a start is in the own team's view, so yellow's is turned round."""
-    x, y = (-place[0], -place[1]) if flip else place
+    x, y = place
+    if flip:
+        x, y = -x, -y
     turned = atan2(sin(heading + pi), cos(heading + pi)) if flip else atan2(sin(heading), cos(heading))
     start = setup.start.model_copy(update={"position": (x, y), "heading": turned})
     params = setup.params if speed is None else {**setup.params, "speed": speed}

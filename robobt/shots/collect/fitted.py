@@ -8,9 +8,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from robobt.match.scenario.placing import HELD_DISTANCE
 from robobt.motion.pilot import ROBOBULLS_LIMITS
-from robobt.shots.collect.balanced import keeper_start, moved
+from robobt.shots.collect.balanced import held_by, keeper_start, moved
 from robobt.shots.collect.plan import Attempt
 from robobt.shots.data.schema import AS_RECORDED
 from robobt.shots.keepers.population import Population, Traits
@@ -63,7 +62,7 @@ def against_fitted(attempt: Attempt, population: Population) -> Attempt:
     rng = np.random.default_rng([attempt.seed, 3])
     traits = population.sample(rng)
     scenario = attempt.scenario
-    shooter, (keeper, *others) = scenario.robots.blue[0], scenario.robots.yellow
+    (shooter, *_), (keeper, *others) = scenario.robots.blue, scenario.robots.yellow
     keeper = keeper.model_copy(
         update={"play": "fitted_goalkeeper", "params": _params(traits), "limits": robot_limits(traits)}
     )
@@ -80,7 +79,8 @@ def against_fitted(attempt: Attempt, population: Population) -> Attempt:
                 variant = AS_RECORDED
                 ball = _swung(scenario.field, ball, float(rng.normal(0.0, _BEARING)))
             scene = _at_kick(scenario.field, ball, traits, rng)
-            params |= {"target_y": scene.target[1], "place_x": ball[0], "place_y": ball[1]}
+            (_, target_y), (place_x, place_y) = scene.target, ball
+            params |= {"target_y": target_y, "place_x": place_x, "place_y": place_y}
             params["tolerance"] = _AT_ONCE
             shooter = moved(shooter, scene.shooter, scene.heading)
             keeper = moved(keeper, scene.keeper, direction(scene.keeper, ball), flip=True)
@@ -124,13 +124,15 @@ def _at_kick(field: FieldGeometry, ball: Point, traits: Traits, rng: np.random.G
     """Draw the scene of a kick from where the ball is."""
     reach = field.goal_width / 2.0 - POST_GAP
     # Attack Main aims beside the goalkeeper, so more often near a post than at the middle.
-    target = (field.half_length, float(rng.choice((-1.0, 1.0))) * reach * sqrt(rng.random()))
+    target_y = float(rng.choice((-1.0, 1.0))) * reach * sqrt(rng.random())
+    target = (field.half_length, target_y)
     aim = direction(ball, target)
     aside = rng.normal(*_ASIDE) if rng.random() < 0.5 else rng.uniform(0.0, _FARTHEST_ASIDE)
-    inward = -np.sign(target[1]) if rng.random() < _INWARD else np.sign(target[1])
+    inward = -np.sign(target_y) if rng.random() < _INWARD else np.sign(target_y)
     # Most stand well back, a few far out.
     keeper = keeper_start(field, ball, target, float(inward * abs(aside)), float(rng.random()) ** 2)
-    across = (keeper[1] - ball[1]) * cos(aim) - (keeper[0] - ball[0]) * sin(aim)
+    (x, y), (keeper_x, keeper_y) = ball, keeper
+    across = (keeper_y - y) * cos(aim) - (keeper_x - x) * sin(aim)
     # Nobody is faster towards the line than lets it stop there, but for a little.
     most = sqrt(2.0 * traits.braking * abs(across)) + 0.1
     towards = -float(np.sign(across)) * min(float(rng.normal(*_TOWARDS)), most)
@@ -139,7 +141,7 @@ def _at_kick(field: FieldGeometry, ball: Point, traits: Traits, rng: np.random.G
     creep = float(rng.uniform(*_CREEP))
     return _Scene(
         target,
-        (ball[0] - HELD_DISTANCE * cos(heading), ball[1] - HELD_DISTANCE * sin(heading)),
+        held_by(ball, heading),
         heading,
         (creep * cos(heading), creep * sin(heading)),
         keeper,

@@ -86,20 +86,22 @@ class PassRater(Settings):
         """
         if not frame.opponents:
             return [inf] * len(targets)
-        start, ball = frame.ball.position, self.ball or frame.ball_model
+        (x, y), ball = frame.ball.position, self.ball or frame.ball_model
         lanes = []
-        for target, speed in zip(targets, speeds, strict=True):
-            dx, dy = target[0] - start[0], target[1] - start[1]
+        for (target_x, target_y), speed in zip(targets, speeds, strict=True):
+            dx, dy = target_x - x, target_y - y
             length = hypot(dx, dy)
             lanes.append(
                 [
-                    (start[0] + share * dx, start[1] + share * dy, ball.time_to(share * length, speed))
+                    (x + share * dx, y + share * dy, ball.time_to(share * length, speed))
                     for share in _LANE_SHARES
                 ]
             )
         px, py, arrival = np.array(lanes).transpose(2, 0, 1)[..., None]
-        x, y, vx, vy, acceleration, top = np.array([self._opponent(robot) for robot in frame.opponents]).T
-        dx, dy = px - x, py - y
+        robot_x, robot_y, vx, vy, acceleration, top = np.array(
+            [self._opponent(robot) for robot in frame.opponents]
+        ).T
+        dx, dy = px - robot_x, py - robot_y
         gap = np.sqrt(dx * dx + dy * dy)
         towards = (dx * vx + dy * vy) / np.maximum(gap, 1e-9)
         gap = np.maximum(gap - _BODY, 0.0)

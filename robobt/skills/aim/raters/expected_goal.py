@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
-from math import hypot
-
 import numpy as np
 from pydantic import Field
 
 from robobt.skills.aim.raters.base import RATERS, Chances, best_first
-from robobt.skills.aim.raters.goal_line import goal_candidates, lane_clearances, normal_cdf, runs
+from robobt.skills.aim.raters.goal_line import directions, goal_candidates, lane_clearances, normal_cdf, runs
 from robobt.skills.aim.raters.openings import goal_mouth
 from robobt.skills.aim.raters.shot_predictor import LearnedRater, shot_predictor
 from robobt.skills.store import Shot
 from robobt.world.features import SCENE_OPPONENTS, SHOT_SCENE, shot_scene
-from robobt.world.geometry import FloatArray, Point
+from robobt.world.geometry import FloatArray, Point, distance
+from robobt.world.records import BALL, BALL_SIZE, ROBOT, ROBOT_SIZE
 from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS, Frame, RobotState
 
 
@@ -56,14 +55,15 @@ class ExpectedGoal(LearnedRater):
         chances = self.chances(frame, origin, me, points)
         if chances is None:
             return [], None
-        aims = np.arctan2(points[:, 1] - origin[1], points[:, 0] - origin[0])
+        aims, (_, y) = directions(origin, points), points.T
         half_step = float(aims[-1] - aims[0]) / max(1, len(aims) - 1) / 2.0
         shots = []
-        for score, region, best in _openings(np.round(chances, 4), self.threshold, self.keep):
-            middle = (float(points[best[0], 1]) + float(points[best[1] - 1, 1])) / 2.0
-            aim = (float(aims[best[0]]) + float(aims[best[1] - 1])) / 2.0
+        openings = _openings(np.round(chances, 4), self.threshold, self.keep)
+        for score, (right, left), (first, stop) in openings:
+            middle = (float(y[first]) + float(y[stop - 1])) / 2.0
+            aim = (float(aims[first]) + float(aims[stop - 1])) / 2.0
             # To the nearer end: an aim that is off by the tolerance is still good on either side.
-            near = min(float(aims[region[1] - 1]) - aim, aim - float(aims[region[0]]))
+            near = min(float(aims[left - 1]) - aim, aim - float(aims[right]))
             shots.append(Shot((frame.field.half_length, middle), near + half_step, score))
         return best_first(shots, origin, me.heading), (points, chances)
 
@@ -75,7 +75,7 @@ class ExpectedGoal(LearnedRater):
         mouth = goal_mouth(frame.field, origin, BALL_RADIUS)
         if mouth is None:
             return None
-        aims = np.arctan2(points[:, 1] - origin[1], points[:, 0] - origin[0])
+        aims = directions(origin, points)
         low, high = mouth
         chances = normal_cdf((high - aims) / self.kick_error) - normal_cdf((low - aims) / self.kick_error)
         ahead = [robot for robot in frame.others(me.id) if robot.x >= me.x]
@@ -96,15 +96,14 @@ class ExpectedGoal(LearnedRater):
         The shooter is taken to point at each target already, with the ball before it:
         the predictor knows kicks, which go out when it does.
         """
-        gap = hypot(origin[0] - me.x, origin[1] - me.y)
-        shooter = np.empty((len(points), 6))
-        shooter[:] = (me.x, me.y, 0.0, me.vx, me.vy, 0.0)
-        shooter[:, 2] = np.arctan2(points[:, 1] - me.y, points[:, 0] - me.x)
-        ball = np.empty((len(points), 4))
-        ball[:] = (*origin, me.vx, me.vy)
+        gap = distance(me.position, origin)
+        shooter = np.full((len(points), ROBOT_SIZE), (me.x, me.y, 0.0, me.vx, me.vy, 0.0), dtype=np.float64)
+        ball = np.full((len(points), BALL_SIZE), (*origin, me.vx, me.vy), dtype=np.float64)
+        heading = shooter.view(ROBOT)["heading"][:, 0]
+        heading[:] = directions(me.position, points)
         if gap < _HELD:
-            ball[:, 0] = me.x + gap * np.cos(shooter[:, 2])
-            ball[:, 1] = me.y + gap * np.sin(shooter[:, 2])
+            held = ball.view(BALL)[:, 0]
+            held["x"], held["y"] = me.x + gap * np.cos(heading), me.y + gap * np.sin(heading)
         rows = np.array([(r.x, r.y, r.heading, r.vx, r.vy, r.omega) for r in ahead], dtype=np.float64)
         scenes = [
             shot_scene(
@@ -155,8 +154,9 @@ def _openings(level: FloatArray, threshold: float, keep: float) -> list[tuple[fl
 
 
 def _around(level: FloatArray, top: int, least: float) -> Run:
-    return next(run for run in runs(level >= least) if run[0] <= top < run[1])
+    return next((first, stop) for first, stop in runs(level >= least) if first <= top < stop)
 
 
 def _overlap(region: Run, found: list[tuple[float, Run, Run]]) -> bool:
-    return any(region[0] < other[1] and other[0] < region[1] for _, other, _ in found)
+    begin, end = region
+    return any(begin < stop and first < end for _, (first, stop), _ in found)

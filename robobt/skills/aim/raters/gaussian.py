@@ -8,7 +8,7 @@ import numpy as np
 from pydantic import Field
 
 from robobt.skills.aim.raters.base import RATERS, ShotRater, best_first
-from robobt.skills.aim.raters.goal_line import goal_candidates, normal_cdf, runs
+from robobt.skills.aim.raters.goal_line import directions, goal_candidates, normal_cdf, runs
 from robobt.skills.aim.raters.openings import Interval, goal_mouth
 from robobt.skills.store import Shot
 from robobt.world.geometry import FloatArray, Point
@@ -41,17 +41,18 @@ class Gaussian(ShotRater):
         if mouth is None:
             return []
         points = goal_candidates(frame.field, self.spacing)
-        aims = np.arctan2(points[:, 1] - origin[1], points[:, 0] - origin[0])
+        aims, (_, y) = directions(origin, points), points.T
         chance = self.chances(aims, mouth, self._blockers(frame, origin, me))
         # Rounded, so that a plateau is one opening and aimed at in its middle.
         level = np.round(chance, 6)
         shots = []
         for first, stop in _plateaus(level):
             score = float(chance[first:stop].max())
-            near = next(run for run in runs(level >= 0.9 * level[first]) if run[0] <= first < run[1])
-            spread = float(aims[near[1] - 1] - aims[near[0]])
+            near = runs(level >= 0.9 * level[first])
+            right, left = next((begin, end) for begin, end in near if begin <= first < end)
+            spread = float(aims[left - 1] - aims[right])
             step = float(aims[-1] - aims[0]) / max(1, len(aims) - 1)
-            middle = (float(points[first, 1]) + float(points[stop - 1, 1])) / 2.0
+            middle = (float(y[first]) + float(y[stop - 1])) / 2.0
             shots.append(Shot((frame.field.half_length, middle), (spread + step) / 2.0, score))
         return best_first(shots, origin, me.heading)
 
@@ -77,11 +78,11 @@ class Gaussian(ShotRater):
         return np.maximum(chance, 0.0)
 
     def _blockers(self, frame: Frame, origin: Point, me: RobotState) -> list[tuple[float, float]]:
-        goal_x = frame.field.half_length
-        gx, gy = goal_x - origin[0], -origin[1]
+        (x, y), goal_x = origin, frame.field.half_length
+        gx, gy = goal_x - x, -y
         found = []
         for robot in frame.others(me.id):
-            dx, dy = robot.x - origin[0], robot.y - origin[1]
+            dx, dy = robot.x - x, robot.y - y
             if dx * gx + dy * gy > 0.0 and robot.x - ROBOT_RADIUS < goal_x:
                 found.append((atan2(dy, dx), atan(self.blocker_width / hypot(dx, dy))))
         return found

@@ -41,11 +41,17 @@ def goal_candidates(field: FieldGeometry, spacing: float = 0.01) -> FloatArray:
 def _candidates(x: float, goal_width: float, spacing: float) -> FloatArray:
     usable = max(0.0, goal_width - 2.0 * POST_GAP)
     count = int(usable / spacing + 1e-9) + 1
-    points = np.empty((count, 2))
-    points[:, 0] = x
-    points[:, 1] = (np.arange(count) - (count - 1) / 2.0) * spacing
+    y = (np.arange(count) - (count - 1) / 2.0) * spacing
+    points = np.column_stack((np.full(count, x), y))
     points.flags.writeable = False
     return points
+
+
+def directions(origin: Point, points: FloatArray) -> FloatArray:
+    """Compute the direction of every point (T, 2) from ``origin``, (T,) [rad]."""
+    (x, y), (px, py) = origin, points.T
+    found: FloatArray = np.arctan2(py - y, px - x)
+    return found
 
 
 def obstacles(frame: Frame, me: RobotState) -> FloatArray:
@@ -98,13 +104,13 @@ def shots_at_groups(
 
     The score is the group's share of all points, the tolerance half the angle the group spans.
     """
-    goal_x = float(points[0, 0])
+    x, y = origin
+    margin = spacing / 2.0
     shots = []
     for first, stop in runs(good):
-        low, high = float(points[first, 1]), float(points[stop - 1, 1])
-        reach = goal_x - origin[0]
-        margin = spacing / 2.0
-        angle = atan2(high + margin - origin[1], reach) - atan2(low - margin - origin[1], reach)
+        (goal_x, low), (_, high) = points[first].tolist(), points[stop - 1].tolist()
+        reach = goal_x - x
+        angle = atan2(high + margin - y, reach) - atan2(low - margin - y, reach)
         shots.append(Shot((goal_x, (low + high) / 2.0), angle / 2.0, (stop - first) / len(points)))
     return best_first(shots, origin, heading)
 
@@ -129,7 +135,8 @@ def judged_goal_line(points: FloatArray, chances: FloatArray, before: GoalLine |
     if len(percent) > _MOST_POINTS:
         kept = np.linspace(0.0, len(percent) - 1.0, _MOST_POINTS)
         percent = np.interp(kept, np.arange(len(percent)), percent)
-    reach = round(float(points[-1, 1] - points[0, 1]) / 2.0, 6)
+    _, y = points.T
+    reach = round(float(y[-1] - y[0]) / 2.0, 6)
     whole = np.rint(percent).astype(np.uint8)
     if before is not None and before.reach == reach:
         old = np.frombuffer(b64decode(before.chances), dtype=np.uint8)

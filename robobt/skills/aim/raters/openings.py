@@ -20,11 +20,12 @@ def goal_mouth(field: FieldGeometry, origin: Point, inset: float) -> Interval | 
 
     None from a point on or behind the goal line.
     """
-    reach = field.half_length - origin[0]
+    x, y = origin
+    reach = field.half_length - x
     half = field.goal_width / 2.0 - inset
     if reach <= 0.0 or half <= 0.0:
         return None
-    return (atan2(-half - origin[1], reach), atan2(half - origin[1], reach))
+    return (atan2(-half - y, reach), atan2(half - y, reach))
 
 
 def disc_shadow(field: FieldGeometry, origin: Point, centre: Point, radius: float) -> Interval | None:
@@ -33,9 +34,10 @@ def disc_shadow(field: FieldGeometry, origin: Point, centre: Point, radius: floa
     A disc that reaches over the origin hides the half plane on its side. One
     that lies wholly behind the goal line hides nothing (None).
     """
-    if centre[0] - radius >= field.half_length:
+    (x, y), (centre_x, centre_y) = origin, centre
+    if centre_x - radius >= field.half_length:
         return None
-    dx, dy = centre[0] - origin[0], centre[1] - origin[1]
+    dx, dy = centre_x - x, centre_y - y
     gap = hypot(dx, dy)
     middle = atan2(dy, dx)
     half = asin(radius / gap) if gap > radius else pi / 2.0
@@ -77,9 +79,10 @@ def opening_shots(
     if mouth is None:
         return []
     shadows = [disc_shadow(field, origin, centre, radius) for centre, radius in discs]
-    reach = field.half_length - origin[0]
+    x, y = origin
+    reach = field.half_length - x
     shots = []
     for low, high in free_intervals(mouth, [shadow for shadow in shadows if shadow is not None]):
-        target = (field.half_length, origin[1] + reach * tan((low + high) / 2.0))
+        target = (field.half_length, y + reach * tan((low + high) / 2.0))
         shots.append(Shot(target, (high - low) / 2.0, min((high - low) / full_angle, 1.0)))
     return best_first(shots, origin, heading)
