@@ -37,8 +37,11 @@ class Perception:
     ) -> None:
         n = len(rngs)
         self._observe = observe
-        self._noise = settings.noise
-        self._noisy = settings.noise != NoiseSettings()
+        noise = settings.noise
+        at, fast = noise.robot_position, noise.velocity
+        self._robot_noise = np.array((at, at, noise.heading, fast, fast, noise.turn_rate))
+        self._ball_noise = np.array((noise.ball_position, noise.ball_position, fast, fast))
+        self._noisy = noise != NoiseSettings()
         self._differenced = settings.velocities == "finite_difference"
         self._period = settings.period
         self._rngs = rngs
@@ -81,13 +84,13 @@ class Perception:
     def _disturbed(
         self, robots: FloatArray, balls: FloatArray, which: IntArray, first: bool
     ) -> tuple[FloatArray, FloatArray]:
-        robots, balls, noise = robots.copy(), balls.copy(), self._noise
+        robots, balls = robots.copy(), balls.copy()
         if self._noisy:
             of_robots, of_balls, _ = split(self._draw(which), robots.shape[1])
-            robots[..., :2] += noise.robot_position * of_robots[..., :2]
+            robots += self._robot_noise * of_robots
+            balls += self._ball_noise * of_balls
             heading = robots.view(ROBOT)["heading"]
-            heading[:] = wrap_angles(heading + noise.heading * of_robots.view(ROBOT)["heading"])
-            balls[:, :2] += noise.ball_position * of_balls[:, :2]
+            heading[:] = wrap_angles(heading)
         if self._differenced:
             if first:
                 robots[..., 3:] = 0.0
@@ -100,10 +103,6 @@ class Perception:
                 balls[:, 2:] = (balls[:, :2] - self._last_balls[which, :2]) / self._period
             self._last_robots[which] = robots
             self._last_balls[which] = balls
-        elif self._noisy:
-            robots[..., 3:5] += noise.velocity * of_robots[..., 3:5]
-            robots.view(ROBOT)["omega"] += noise.turn_rate * of_robots.view(ROBOT)["omega"]
-            balls[:, 2:] += noise.velocity * of_balls[:, 2:]
         return robots, balls
 
     def _draw(self, which: IntArray) -> FloatArray:

@@ -23,7 +23,7 @@ class Ends(NamedTuple):
     @classmethod
     def none(cls, n: int) -> Ends:
         """Return those of ``n`` episodes that go on."""
-        return cls(*np.zeros((3, n), dtype=np.bool_))
+        return cls._make(np.zeros((3, n), dtype=np.bool_))
 
     def copy(self) -> Ends:
         """Return what does not change with these."""
