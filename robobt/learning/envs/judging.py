@@ -65,6 +65,14 @@ def parameters(kind: np.dtype[np.void], **parts: float | BaseModel) -> FloatArra
     return filled(kind, None, **numbers).reshape(1).view(np.float64)
 
 
+def fresh(kind: np.dtype[np.void], **fields: float) -> FloatArray:
+    """Return the numbers of a record ``kind`` whose fields are 0 but for these."""
+    made = np.zeros(1, kind)
+    for name, value in fields.items():
+        made[name] = value
+    return made.view(np.float64)
+
+
 @compiled_inline
 def is_over(ledger: Ledger, arena: int) -> bool:
     """Return whether the arena's episode ended earlier in this decision: what follows does not count."""

@@ -12,7 +12,7 @@ from typing import NamedTuple, Protocol, cast
 import numpy as np
 from numpy.typing import NDArray
 
-from robobt.learning.envs.judging import After, after, parameters
+from robobt.learning.envs.judging import After, after, fresh, parameters
 from robobt.learning.envs.soccer.judge import Stop
 from robobt.learning.envs.soccer.settings import SoccerSettings
 from robobt.learning.envs.task import BoolArray, FloatArray, IntArray
@@ -69,6 +69,8 @@ class _Rules(Protocol):
 
 
 _RULES = record_dtype(_Rules)
+_IN_PLAY = fresh(RESTART, taker=-1.0)
+"""Restarts as an episode begins."""
 
 
 class _Found(NamedTuple):
@@ -117,8 +119,7 @@ class Restarts:
 
     def begin(self, which: IntArray) -> None:
         """Begin episodes, with the ball in play."""
-        self.rows[which] = 0.0
-        self.states["taker"][which] = -1.0
+        self.rows[which] = _IN_PLAY
 
     def watch(self, arenas: Arenas, over: BoolArray) -> BoolArray:
         """Look at a tick: fill ``fouls`` and ``stops``; return who was put back, (n, R + 1).
@@ -174,29 +175,29 @@ class Restarts:
 
     def tell(self, seen: FloatArray, which: IntArray, who: NDArray[np.int64]) -> None:
         """Fill what the robots ``who`` of the arenas ``which`` are told in observations (m, L * size)."""
-        each, states = seen.reshape(len(which), len(who), -1), self.states[which]
+        each, states = seen.reshape(len(which), len(who), -1), self.rows[which].view(RESTART)
         sides = np.where(who < self._blue, 1.0, -1.0)
         told = 1 + self._double_touch
         # Without -0.
-        each[..., -told] = states["team"][:, None] * sides + 0.0
+        each[..., -told] = states["team"] * sides + 0.0
         if self._double_touch:
-            each[..., -1] = states["taker"][:, None] == who
+            each[..., -1] = states["taker"] == who
 
     def game(self, arena: int) -> GameState:
         """Return the state of the game in an arena, as blue sees it."""
-        state = self.states[arena]
-        if state["last_team"] == 0.0:
+        team, x, y, _, left, _, last_team = self.rows[arena].tolist()
+        if last_team == 0.0:
             return OPEN_PLAY
-        blue = state["last_team"] > 0.0
+        blue = last_team > 0.0
         command = RefereeCommand.DIRECT_FREE_BLUE if blue else RefereeCommand.DIRECT_FREE_YELLOW
-        if state["team"] == 0.0:
+        if team == 0.0:
             return GameState(command)
         return GameState(
             command,
             restart=Restart.FREE_KICK,
             restart_team=Team.BLUE if blue else Team.YELLOW,
-            placement=(float(state["spot_x"]), float(state["spot_y"])),
-            action_time=float(state["left"]) * self._period,
+            placement=(x, y),
+            action_time=left * self._period,
         )
 
 

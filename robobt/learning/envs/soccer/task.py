@@ -8,7 +8,7 @@ import numpy as np
 
 from robobt.learning.envs.arena_task import ArenaTask
 from robobt.learning.envs.central import central_view
-from robobt.learning.envs.judging import after, parameters
+from robobt.learning.envs.judging import after, fresh, parameters
 from robobt.learning.envs.soccer.judge import JUDGED, MIND, TERMS, Play, judge
 from robobt.learning.envs.soccer.letting_go import let_go
 from robobt.learning.envs.soccer.restarts import Restarts
@@ -25,6 +25,9 @@ from robobt.learning.opponents.restart_players import RestartPlayers
 from robobt.sim.records import RecordArray, size
 from robobt.world.game import GameState
 from robobt.world.team_view import AWAY, team_view, team_view_rows
+
+_NEW_MIND = fresh(MIND, last=-1)
+_NEW_MEMORY = fresh(MEMORY, to_goal=np.nan, to_ball=np.nan)
 
 
 class SoccerTask(ArenaTask):
@@ -162,10 +165,8 @@ class SoccerTask(ArenaTask):
 
     def begin(self, starts: FloatArray, which: IntArray) -> None:
         """See :meth:`ArenaTask.begin`."""
-        self._minds[which] = 0.0
-        self._states["last"][which] = -1
-        self._memories[which] = 0.0
-        self._forget(which)
+        self._minds[which] = _NEW_MIND
+        self._memories[which] = _NEW_MEMORY
         self._restarts.begin(which)
         _, _, traits = split(starts, self.robots)
         for k, keeper in enumerate(self._keepers):
@@ -216,14 +217,10 @@ class SoccerTask(ArenaTask):
         # Nobody has had this ball yet, and nobody has brought it nearer to a goal.
         minds["last"][which] = -1
         minds["blue_ticks"][which] = minds["yellow_ticks"][which] = 0.0
-        self._forget(which)
+        memories = self._memories.view(MEMORY)
+        memories["to_goal"][which] = memories["to_ball"][which] = np.nan
         for axis in "xy":
             self._progress[f"ball_{axis}"][which] = restarts[f"spot_{axis}"][which]
-
-    def _forget(self, which: IntArray) -> None:
-        """Forget how far away from goals and learners the balls of these arenas were."""
-        memories = self._memories.view(MEMORY)[..., 0]
-        memories["to_goal"][which] = memories["to_ball"][which] = np.nan
 
     def _announce(self, seen: FloatArray, which: IntArray) -> None:
         if self.settings.rules.restarts and self.learners:
