@@ -385,9 +385,9 @@ class ArenaTask:
         field, going = self.settings.field, ~ends.over
         robots, balls = arenas.robots.copy(), arenas.balls.copy()
         arenas.step(self._randomiser.delayed(self._carried()))
-        earned, judged_ends, total = np.zeros(self.n), ends.copy(), progress["total_reward"].copy()
+        judged_ends, total = ends.copy(), progress["total_reward"].copy()
         self._term_rows[:] = 0.0
-        self._judge(actions, earned, judged_ends)
+        self._judge(actions, np.zeros(self.n), judged_ends)
         tick = Tick(
             now=seen(arenas.robots, arenas.balls, blue, field),
             before=seen(robots, balls, blue, field),

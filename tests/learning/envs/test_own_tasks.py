@@ -6,12 +6,22 @@ import subprocess
 import sys
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
 from robobt.learning import TASKS
-from robobt.learning.envs import GoToBallTask, TaskError, Tick, find_task, make_task
+from robobt.learning.envs import (
+    GoToBallTask,
+    ScoreOnGoalkeeperTask,
+    ShootTask,
+    TaskError,
+    Tick,
+    find_task,
+    make_task,
+)
+from robobt.learning.envs.soccer.task import SoccerTask
 from robobt.learning.training.settings import SettingsError, load_settings
 from robobt.plays.sources import PythonFileError
 from robobt.world.observation import OWN_OBSERVATIONS
@@ -140,6 +150,22 @@ def test_ends_of_a_shipped_task_are_changed_by_one_method() -> None:
         result = task.advance(np.zeros((4, 3)))
     assert result.terminated.all()
     assert not result.success.any()
+
+
+@pytest.mark.parametrize("kind", [GoToBallTask, ShootTask, ScoreOnGoalkeeperTask, SoccerTask])
+def test_settings_of_a_shipped_task_may_have_more_numbers(kind: Any) -> None:
+    class MoreSettings(kind.Settings):  # type: ignore[misc]
+        bonus: float = 2.0
+
+    class More(kind):  # type: ignore[misc]
+        Settings = MoreSettings
+
+    tasks = [one(None, 2, seed=1) for one in (kind, More)]
+    for task in tasks:
+        task.reset()
+    for _ in range(30):
+        shipped, more = (task.step(np.full((2, task.action_size), 0.5)) for task in tasks)
+        np.testing.assert_array_equal(more.reward, shipped.reward)
 
 
 @pytest.mark.parametrize(
