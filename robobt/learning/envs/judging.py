@@ -1,7 +1,7 @@
 """What the judging of every task begins and ends with, for its compiled loop over the arenas.
 
 Python hands such a loop plain tuples of plain arrays, whose types numba finds fastest. The loop begins with
-``Ledger(*ledger_)`` or ``After(*after_)`` and views the arrays as records.
+``Ledger(*ledger_)`` or ``Report(*report_)`` and views the arrays as records.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ from robobt.world.rules import goal_side
 FIELD = numbers_dtype(FieldGeometry)
 
 
-class After(NamedTuple):
+class Report(NamedTuple):
     """What ``n`` arenas with R robots each report after a tick; see :class:`~robobt.sim.arenas.Arenas`."""
 
     robots: FloatArray  # (n, R, ROBOT_SIZE)
@@ -51,9 +51,9 @@ class Ledger(NamedTuple):
     success: BoolArray
 
 
-def after(arenas: Arenas) -> After:
+def report_of(arenas: Arenas) -> Report:
     """Return the arenas' arrays as a plain tuple."""
-    return cast(After, (arenas.robots, arenas.balls, arenas.contact, arenas.kicked, arenas.touch))
+    return cast(Report, (arenas.robots, arenas.balls, arenas.contact, arenas.kicked, arenas.touch))
 
 
 def parameters(kind: np.dtype[np.void], **parts: float | BaseModel) -> FloatArray:

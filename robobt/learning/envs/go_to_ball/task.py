@@ -18,7 +18,7 @@ from robobt.learning.envs.go_to_ball.settings import (
     GoToBallSettings,
 )
 from robobt.learning.envs.go_to_ball.starts import columns_of, go_to_ball_starts
-from robobt.learning.envs.judging import After, Ledger, after, begin_tick, end_tick, is_over, parameters
+from robobt.learning.envs.judging import Ledger, Report, begin_tick, end_tick, is_over, parameters, report_of
 from robobt.learning.envs.progress import PROGRESS, Progress
 from robobt.learning.envs.scripted import BEHIND, drive_and_face, drive_to_shoot, freest_way
 from robobt.learning.envs.starts import parts_of, split
@@ -157,7 +157,7 @@ class GoToBallTask(ArenaTask):
             self._patrols.decide(self.arenas.robots, commands)
 
     def _judge(self, actions: FloatArray, rewards: FloatArray, ends: Ends) -> bool:
-        return _judge(self._judged_by, actions, after(self.arenas), self._ledger(rewards, ends))
+        return _judge(self._judged_by, actions, report_of(self.arenas), self._ledger(rewards, ends))
 
     def _optimum(self, starts: FloatArray, which: IntArray) -> FloatArray:
         settings = self.settings
@@ -183,9 +183,9 @@ class GoToBallAmongRobotsTask(GoToBallTask):
 
 
 @compiled_lean
-def _judge(task_: FloatArray, actions: FloatArray, after_: After, ledger_: Ledger) -> bool:
+def _judge(task_: FloatArray, actions: FloatArray, report_: Report, ledger_: Ledger) -> bool:
     task: _Task = task_.view(_TASK)[0]
-    arenas, ledger = After(*after_), Ledger(*ledger_)
+    arenas, ledger = Report(*report_), Ledger(*ledger_)
     robots, balls = arenas.robots.view(ROBOT)[..., 0], arenas.balls.view(BALL)[..., 0]
     episodes, terms = ledger.progress.view(PROGRESS)[..., 0], ledger.terms.view(_TERMS)[..., 0]
     any_ended = False

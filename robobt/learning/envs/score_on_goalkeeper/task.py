@@ -10,14 +10,14 @@ import numpy as np
 from robobt.learning.envs.arena_task import ArenaTask
 from robobt.learning.envs.bounds import BUMP, farthest, seen_speed, seen_turn
 from robobt.learning.envs.judging import (
-    After,
     Ledger,
-    after,
+    Report,
     begin_tick,
     end_tick,
     goal_of,
     is_over,
     parameters,
+    report_of,
 )
 from robobt.learning.envs.progress import PROGRESS, Progress
 from robobt.learning.envs.score_on_goalkeeper.rewards import ScoreReward, ScoreTerms, end_reward, reward
@@ -110,13 +110,15 @@ class ScoreOnGoalkeeperTask(ArenaTask):
         self._keepers.decide(arenas.robots, arenas.balls, arenas.contact, commands)
 
     def _judge(self, actions: FloatArray, rewards: FloatArray, ends: Ends) -> bool:  # noqa: ARG002
-        return _judge(self._judged_by, self._keepers.kept, after(self.arenas), self._ledger(rewards, ends))
+        return _judge(
+            self._judged_by, self._keepers.kept, report_of(self.arenas), self._ledger(rewards, ends)
+        )
 
 
 @compiled_lean
-def _judge(task_: FloatArray, kept: BoolArray, after_: After, ledger_: Ledger) -> bool:
+def _judge(task_: FloatArray, kept: BoolArray, report_: Report, ledger_: Ledger) -> bool:
     task: _Task = task_.view(_TASK)[0]
-    arenas, ledger = After(*after_), Ledger(*ledger_)
+    arenas, ledger = Report(*report_), Ledger(*ledger_)
     robots, balls = arenas.robots.view(ROBOT)[..., 0], arenas.balls.view(BALL)[..., 0]
     episodes, terms = ledger.progress.view(PROGRESS)[..., 0], ledger.terms.view(_TERMS)[..., 0]
     settings = task.settings

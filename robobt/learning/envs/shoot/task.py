@@ -11,14 +11,14 @@ import numpy as np
 from robobt.learning.envs.arena_task import ArenaTask, Policy
 from robobt.learning.envs.bounds import BUMP, farthest, seen_speed, seen_turn
 from robobt.learning.envs.judging import (
-    After,
     Ledger,
-    after,
+    Report,
     begin_tick,
     end_tick,
     goal_of,
     is_over,
     parameters,
+    report_of,
 )
 from robobt.learning.envs.progress import PROGRESS, Progress
 from robobt.learning.envs.scripted import turn_and_kick
@@ -112,13 +112,13 @@ class ShootTask(ArenaTask):
         return KickToTarget(target=self.settings.field.their_goal, kick_speed=self.action.kick_speed)
 
     def _judge(self, actions: FloatArray, rewards: FloatArray, ends: Ends) -> bool:
-        return _judge(self._judged_by, actions, after(self.arenas), self._ledger(rewards, ends))
+        return _judge(self._judged_by, actions, report_of(self.arenas), self._ledger(rewards, ends))
 
 
 @compiled_lean
-def _judge(task_: FloatArray, actions_: FloatArray, after_: After, ledger_: Ledger) -> bool:
+def _judge(task_: FloatArray, actions_: FloatArray, report_: Report, ledger_: Ledger) -> bool:
     task: _Task = task_.view(_TASK)[0]
-    arenas, ledger = After(*after_), Ledger(*ledger_)
+    arenas, ledger = Report(*report_), Ledger(*ledger_)
     robots, balls = arenas.robots.view(ROBOT)[..., 0], arenas.balls.view(BALL)[..., 0]
     episodes, terms = ledger.progress.view(PROGRESS)[..., 0], ledger.terms.view(_TERMS)[..., 0]
     actions, any_ended = actions_.view(_ACTION)[..., 0], False

@@ -6,7 +6,7 @@ from enum import IntEnum
 from math import hypot, inf, isnan, nan, sqrt
 from typing import NamedTuple, Protocol
 
-from robobt.learning.envs.judging import After, Ledger, begin_tick, end_tick, goal_of, is_over
+from robobt.learning.envs.judging import Ledger, Report, begin_tick, end_tick, goal_of, is_over
 from robobt.learning.envs.progress import PROGRESS, Progress
 from robobt.learning.envs.soccer.rewards import (
     MEMORY,
@@ -115,17 +115,17 @@ class _Course(NamedTuple):
 
 
 @compiled_lean
-def judge(judged_: FloatArray, after_: After, play_: Play, ledger_: Ledger) -> bool:
+def judge(judged_: FloatArray, report_: Report, play_: Play, ledger_: Ledger) -> bool:
     """Judge a tick of all arenas; return whether any episode has ended.
 
     Args:
         judged_: numbers of :class:`Judged`.
-        after_: the arenas after the tick.
+        report_: of the arenas after the tick.
         play_: what is kept of them, changed.
         ledger_: their episodes, changed.
     """
     judged: Judged = judged_.view(JUDGED)[0]
-    arenas, play, ledger = After(*after_), Play(*play_), Ledger(*ledger_)
+    arenas, play, ledger = Report(*report_), Play(*play_), Ledger(*ledger_)
     robots, balls = arenas.robots.view(ROBOT)[..., 0], arenas.balls.view(BALL)[..., 0]
     minds, memories = play.minds.view(MIND)[..., 0], play.memories.view(MEMORY)[..., 0]
     episodes, terms = ledger.progress.view(PROGRESS)[..., 0], ledger.terms.view(TERMS)[..., 0]

@@ -12,7 +12,7 @@ from typing import NamedTuple, Protocol, cast
 import numpy as np
 from numpy.typing import NDArray
 
-from robobt.learning.envs.judging import After, after, fresh, parameters
+from robobt.learning.envs.judging import Report, fresh, parameters, report_of
 from robobt.learning.envs.soccer.judge import Stop
 from robobt.learning.envs.soccer.settings import SoccerSettings
 from robobt.learning.envs.task import BoolArray, FloatArray, IntArray
@@ -129,7 +129,7 @@ class Restarts:
             over: (n,) which episodes ended earlier in this decision.
         """
         found = cast(_Found, (self.rows, self.fouls, self.stops, self._moved))
-        moved = _watch(self._rules, after(arenas), arenas.flight, over, found)
+        moved = _watch(self._rules, report_of(arenas), arenas.flight, over, found)
         if moved:
             which, who = np.nonzero(self._moved[:, :-1])
             arenas.place_robot(which, who, arenas.robots[which, who])
@@ -202,10 +202,10 @@ class Restarts:
 
 
 @compiled_lean
-def _watch(rules_: FloatArray, after_: After, flight_: FloatArray, over: BoolArray, found_: _Found) -> bool:
+def _watch(rules_: FloatArray, report_: Report, flight_: FloatArray, over: BoolArray, found_: _Found) -> bool:
     """See :meth:`Restarts.watch`; return whether anybody has been put back."""
     rules: _Rules = rules_.view(_RULES)[0]
-    arenas, found = After(*after_), _Found(*found_)
+    arenas, found = Report(*report_), _Found(*found_)
     robots, balls = arenas.robots.view(ROBOT)[..., 0], arenas.balls.view(BALL)[..., 0]
     states, flights = found.states.view(RESTART)[..., 0], flight_.view(FLIGHT)[..., 0]
     any_moved = False

@@ -8,7 +8,7 @@ import numpy as np
 
 from robobt.learning.envs.arena_task import ArenaTask
 from robobt.learning.envs.central import central_view
-from robobt.learning.envs.judging import after, fresh, parameters
+from robobt.learning.envs.judging import fresh, parameters, report_of
 from robobt.learning.envs.soccer.judge import JUDGED, MIND, TERMS, Play, judge
 from robobt.learning.envs.soccer.letting_go import let_go
 from robobt.learning.envs.soccer.restarts import Restarts
@@ -201,7 +201,7 @@ class SoccerTask(ArenaTask):
             put = restarts.watch(arenas, ends.over)
             before = np.column_stack((progress["ball_x"], progress["ball_y"]))
         play = (self._who, kept, restarts.fouls, restarts.stops, self._minds, self._memories, self._shares)
-        ended = judge(self._judged_by, after(arenas), cast(Play, play), self._ledger(rewards, ends))
+        ended = judge(self._judged_by, report_of(arenas), cast(Play, play), self._ledger(rewards, ends))
         if on:
             self._go_on(np.flatnonzero(restarts.stops * ~ends.over), before)
             self._perception.put(arenas.robots, arenas.balls, put)
