@@ -1,7 +1,7 @@
 """Go-To-Ball among robots in matches of one robot, its planner and a model on the same starts.
 
-    python benchmarks/among_robots_in_matches.py go_to_ball_among_robots_ppo --starts 200
-    python benchmarks/among_robots_in_matches.py go_to_ball_among_robots_ppo --address league://grsim
+    python -m benchmarks among_robots_in_matches go_to_ball_among_robots_ppo --starts 200
+    python -m benchmarks among_robots_in_matches go_to_ball_among_robots_ppo --address league://grsim
 
 The starts are the task's, but for those with the ball in a defence area, where no field player may go, and
 the others begin at rest. The worlds are those of ``transfer.py``; with an address it is that one alone, in
@@ -19,9 +19,9 @@ from collections.abc import Iterator
 from math import pi
 
 import numpy as np
-from go_to_ball_among_robots import shares
-from transfer import SEED, WORLDS
 
+from benchmarks.go_to_ball_among_robots import shares
+from benchmarks.transfer import SEED, WORLDS
 from robobt.learning.envs import GoToBallAmongRobotsSettings, make_task
 from robobt.learning.envs.go_to_ball.task import TOUCHING
 from robobt.learning.opponents.patrols import TRAITS, Patrols
@@ -188,7 +188,3 @@ def played(match: Scenario, seed: int, factory: WorldFactory) -> tuple[float, fl
                 if distance(me.position, truth.ball.position) < REACHED:
                     return 1.0, 0.0, truth.time
         return 0.0, 0.0, match.ends.time_limit
-
-
-if __name__ == "__main__":
-    main()

@@ -1,8 +1,8 @@
 """Every task of the suite by PPO and TD3 of robobt, and by PPO, SAC and TD3 of Stable-Baselines3.
 
     pip install "robobt[sb3]"
-    python benchmarks/baselines.py --seeds 5 --out runs/baselines
-    python benchmarks/baselines.py --out runs/baselines --table --curves baselines.svg
+    python -m benchmarks baselines --seeds 5 --out runs/baselines
+    python -m benchmarks baselines --out runs/baselines --table --curves baselines.svg
 
 A cell is a task, an algorithm and a seed. All learn in the same environment for the same CPU seconds of
 collecting and learning, are evaluated on the same validation starts without noise, and the best policy by
@@ -21,14 +21,14 @@ from copy import deepcopy
 from functools import cached_property
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import Any
+from typing import TYPE_CHECKING, Any, cast
 
 import gymnasium
 import numpy as np
-from baselines_report import add_cell, draw, read_cells, table
 from torch import nn
 
 import robobt
+from benchmarks.baselines_report import add_cell, draw, read_cells, table
 from robobt.config.commit import source_commit
 from robobt.config.extras import need
 from robobt.learning.agents.networks import one_thread, policy_of
@@ -47,6 +47,9 @@ from robobt.learning.training.run_folder import RunFolder
 from robobt.learning.training.settings import settings_of
 from robobt.models.card import ModelCard, ObservationCard, action_outputs
 from robobt.models.export import export_model
+
+if TYPE_CHECKING:
+    from robobt.learning.envs.gymnasium_base import TaskVectorEnv
 
 TASKS = {
     "GoToBall": "go_to_ball",
@@ -258,14 +261,14 @@ def train_sb3(
     from robobt.learning.envs.stable_baselines3 import ArenasVecEnv
 
     name = f"{environment_id(TASKS[task])}-v0"
-    how = {"vectorization_mode": "vector_entry_point", "settings": environment}
-    rows = ArenasVecEnv(gymnasium.make_vec(name, ROWS[algorithm], **how))
+    how: dict[str, Any] = {"vectorization_mode": "vector_entry_point", "settings": environment}
+    rows = ArenasVecEnv(cast("TaskVectorEnv", gymnasium.make_vec(name, ROWS[algorithm], **how)))
     changes: dict[str, Any] = {}
     if algorithm == "ppo":
         # Of 2,048 steps of each of so many robots there would be few updates.
         changes = {"n_steps": 40, "batch_size": 1280}
     if algorithm == "td3":
-        actions = rows.action_space.shape[0]
+        actions = cast("tuple[int]", rows.action_space.shape)[0]
         changes = {"action_noise": NormalActionNoise(np.zeros(actions), np.full(actions, NOISE))}
     kind = getattr(stable_baselines3, algorithm.upper())
     agent = kind("MlpPolicy", rows, seed=seed, device="cpu", **changes)
@@ -294,7 +297,3 @@ def actor_of(agent: Any) -> nn.Module:
         return nn.Sequential(policy.actor.latent_pi, policy.actor.mu, nn.Tanh())
     network: nn.Module = policy.actor.mu
     return network
-
-
-if __name__ == "__main__":
-    main()

@@ -1,7 +1,7 @@
 """Go-To-Ball among robots: planner, freest way, straight drive, chance and models on the same fresh starts.
 
-    python benchmarks/go_to_ball_among_robots.py --starts 1000
-    python benchmarks/go_to_ball_among_robots.py models/among_robots.pt --set simulator=grsim
+    python -m benchmarks go_to_ball_among_robots --starts 1000
+    python -m benchmarks go_to_ball_among_robots models/among_robots.pt --set simulator=grsim
 
 Reached and touched with Wilson's 95 % intervals, and the mean time to the ball. Models are compared with the
 planner on the starts where both reach it. The planner is the skill ``GoToBall``, within the task's 1.5 m/s;
@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from robobt import load_policy
 from robobt.cli.common import parse_assignments
 from robobt.learning.envs import GoToBallAmongRobotsSettings, make_task
+from robobt.learning.envs.arena_task import Policy
 from robobt.learning.envs.evaluation import run_starts
 from robobt.learning.envs.scripted import freest_way, straight_drive_among
 from robobt.learning.training.teachers import playing, skill
@@ -38,7 +39,7 @@ def main() -> None:
     task = make_task(settings, min(64, given.starts))
     starts = task.sample_starts(SEED, given.starts)
     rng = np.random.default_rng(SEED)
-    policies = {
+    policies: dict[str, Policy] = {
         "planner": playing(task, skill(task)),
         "freest way": freest_way,
         "straight": straight_drive_among,
@@ -66,7 +67,3 @@ def shares(reached: NDArray[np.bool_], touched: NDArray[np.bool_]) -> str:
         for label, count in (("reached", reached), ("touched", touched))
         for low, high in (wilson_interval(int(count.sum()), len(count)),)
     )
-
-
-if __name__ == "__main__":
-    main()

@@ -1,4 +1,4 @@
-"""How large each extra is, in an environment that has them all: `python benchmarks/install_sizes.py`.
+"""How large each extra is, in an environment that has them all: `python -m benchmarks install_sizes`.
 
 For each extra: what it adds to an installation that has the package itself and the extras named
 with it, by the sizes of the files that each distribution lists, compiled ones included.
@@ -65,7 +65,3 @@ def main() -> None:
             continue
         beside = f" beside {', '.join(sorted(Requirement(named[0]).extras))}" if named else ""
         print(f"{extra:24} {size(added):6.0f} MB{beside}")
-
-
-if __name__ == "__main__":
-    main()

@@ -1,7 +1,7 @@
 """A policy for Score against every kind of goalkeeper, on starts of its own; the script beside it.
 
-    python benchmarks/score_on_goalkeepers.py models/score_ppo.pt --starts 1000
-    python benchmarks/score_on_goalkeepers.py models/score_ppo.pt --set simulator=erforce --set decide_every=1
+    python -m benchmarks score_on_goalkeepers models/score_ppo.pt --starts 1000
+    python -m benchmarks score_on_goalkeepers models/score_ppo.pt --set simulator=erforce --set decide_every=1
 
 ``shipped`` is the play ``goalkeeper``, at full speed as all are here but ``fitted``, which is as fast as
 those of the paper's real shots. Neither is met in training by default. Goals with Wilson's 95 % interval,

@@ -1,8 +1,8 @@
 """What a script and chance reach in the tasks of several robots, on fresh starts; or plays and models.
 
-    python benchmarks/soccer_suite.py --starts 1000
-    python benchmarks/soccer_suite.py --task Save --set simulator=grsim
-    python benchmarks/soccer_suite.py --task ScoreOnGoalkeeperAndDefenders --play attack_expected --model a.pt
+    python -m benchmarks soccer_suite --starts 1000
+    python -m benchmarks soccer_suite --task Save --set simulator=grsim
+    python -m benchmarks soccer_suite --task ScoreOnGoalkeeperAndDefenders --play attack_expected --model a.pt
 
 Successes with Wilson's 95 % intervals and the mean length of an episode. The script plays in the learners'
 places, as robobt.learning.envs.soccer.suite says; chance draws uniformly, and kicks once in twenty decisions.
@@ -19,7 +19,7 @@ import numpy as np
 
 from robobt import load_policy
 from robobt.cli.common import parse_assignments
-from robobt.cli.compare import parse_play
+from robobt.cli.scenario_options import parse_play
 from robobt.learning.envs import run_starts
 from robobt.learning.envs.episodes import Episodes
 from robobt.learning.envs.soccer.settings import SoccerSettings
@@ -94,7 +94,3 @@ class _Chance:
         actions = self._rng.uniform(-1.0, 1.0, (len(seen), *self._shape))
         actions[..., -1] += 2.0 * KICKS - 1.0
         return actions.reshape(len(seen), -1)
-
-
-if __name__ == "__main__":
-    main()

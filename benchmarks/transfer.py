@@ -1,8 +1,8 @@
 """A policy in worlds that it was not trained in, beside the play it is to beat, from the same starts.
 
-    python benchmarks/transfer.py models/score.pt --trials 200
-    python benchmarks/transfer.py models/save.pt --only default --against attack_learned:policy=a.pt
-    python benchmarks/transfer.py models/score.pt --address league://grsim
+    python -m benchmarks transfer models/score.pt --trials 200
+    python -m benchmarks transfer models/save.pt --only default --against attack_learned:policy=a.pt
+    python -m benchmarks transfer models/score.pt --address league://grsim
 
 The worlds are presets of the simulator, ``noisy`` the default one with ER-Force's realistic noise and delays.
 With an address it is that world alone, in which a simulator has to run (docs/league.md). A model for Score or
@@ -18,7 +18,7 @@ from __future__ import annotations
 import argparse
 from collections.abc import Mapping
 
-from robobt.cli.compare import with_teams
+from robobt.cli.scenario_options import with_teams
 from robobt.experiments.compare import Difference, compare
 from robobt.match import MatchResult, load_scenario, run_trials
 from robobt.match.scenario.changes import changed
@@ -112,7 +112,3 @@ def _points(one: Difference) -> str:
     if one.mean is None or one.low is None or one.high is None:
         return "the same"
     return f"{100 * one.mean:+.1f} ({100 * one.low:+.1f} to {100 * one.high:+.1f})"
-
-
-if __name__ == "__main__":
-    main()

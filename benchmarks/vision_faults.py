@@ -1,7 +1,7 @@
 """The vision filter where vision is at fault: the largest error of each case, and cameras that disagree.
 
-    python benchmarks/vision_faults.py
-    python benchmarks/vision_faults.py --draws 1000
+    python -m benchmarks vision_faults
+    python -m benchmarks vision_faults --draws 1000
 
 The first form plays each fault for six seconds and prints the largest errors after the first second. Our
 robot drives in circles at 1 m/s and turns with them, without telling the filter its commands; another
@@ -176,7 +176,8 @@ def stream(
     for number in range(round(seconds / PERIOD)):
         for camera, (dx, dy) in enumerate(offsets):
             frame = scene.seen(camera, number, number * PERIOD + late[camera], rng)
-            for seen in (*frame.balls, *frame.robots):
+            detections: list[BallDetection | RobotDetection] = [*frame.balls, *frame.robots]
+            for seen in detections:
                 seen.x += dx
                 seen.y += dy
             fault(frame, rng)
@@ -192,7 +193,7 @@ def largest(scene: Scene, sent: Sent) -> dict[str, float]:
             arrived = frame.captured
         robots = known.frame_at(known.captured or arrived).robots()
         seen = {robot: (state.x, state.y) for robot, state in robots.items()}
-        if not sources.takes(frame, sender, arrived, lambda seen=seen: seen):
+        if not sources.takes(frame, sender, arrived, partial(dict, seen)):
             continue
         clocks.align(frame, arrived)
         if not known.add(frame) or frame.captured < STARTED + WARM_UP:
@@ -357,7 +358,3 @@ def main(words: list[str] | None = None) -> None:
         show_draws(given.draws)
     else:
         show_cases(given.seed)
-
-
-if __name__ == "__main__":
-    main()

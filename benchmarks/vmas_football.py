@@ -1,7 +1,7 @@
 """Three against three beside VMAS' scenario ``football``, on one thread, each at its best number of arenas.
 
     pip install vmas
-    python benchmarks/vmas_football.py
+    python -m benchmarks vmas_football
 
 All six robots are learners that act at random: on either side observations and rewards of all of them are
 in the time, and episodes that start anew. A step of VMAS is 0.1 s of circles in two sub-steps; one of ours a
@@ -71,7 +71,7 @@ def ours(n: int) -> tuple[Callable[[], object], float]:
 
 def theirs(n: int) -> tuple[Callable[[], object], float]:
     """Return the same of VMAS."""
-    import vmas  # an optional dependency of this benchmark alone
+    import vmas  # type: ignore[import-not-found]  # an optional dependency of this benchmark alone
 
     env = vmas.make_env(
         "football", num_envs=n, seed=0, n_blue_agents=3, n_red_agents=3, ai_red_agents=False, max_steps=167
@@ -84,7 +84,3 @@ def theirs(n: int) -> tuple[Callable[[], object], float]:
             env.reset_at(index)
 
     return step, env.scenario.world.dt
-
-
-if __name__ == "__main__":
-    main()

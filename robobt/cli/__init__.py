@@ -8,14 +8,14 @@ from __future__ import annotations
 
 import gc
 import sys
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from importlib import import_module
 from io import TextIOWrapper
 from typing import Annotated
 
 import typer
 
-from robobt.cli.common import console, one_line_errors
+from robobt.cli.common import console, errors, one_line_errors
 from robobt.cli.groups import spread
 from robobt.config.telling import tell_warnings
 from robobt.signals import leave_after_signal
@@ -68,29 +68,11 @@ _GROUPS = {
             "deployed": "deployed:deployed",
         },
     ),
-    "bench": (
-        "Measure how fast things are, on one core.",
-        {
-            "sim": "bench.parts:bench_sim",
-            "arenas": "bench.parts:bench_arenas",
-            "tree": "bench.parts:bench_tree",
-            "policy": "bench.parts:bench_policy",
-            "env": "bench.parts:bench_env",
-            "match": "bench.match:bench_match",
-            "live": "bench.live:bench_live",
-            "shots": "bench.shots:bench_shots",
-            "sprt": "bench.sprt:bench_sprt",
-            "engines": "bench.engines:bench_engines",
-            "tournament": "bench.tournament:bench_tournament",
-            "train": "bench.train:bench_train",
-            "filter": "bench.league:bench_filter",
-            "chips": "bench.chips:bench_chips",
-            "clock": "bench.league:bench_clock",
-            "league": "bench.league:bench_league",
-        },
-    ),
 }
-"""The groups of commands, likewise, each with its help."""
+"""The groups of commands, each with its help and its commands."""
+
+_MOVED = {"bench": "python -m benchmarks"}
+"""Commands that are run from a clone of the repository now, and how."""
 
 app: typer.Typer
 """The whole of it, made when it is first used."""
@@ -149,9 +131,20 @@ def _enter(group: typer.Typer, commands: Mapping[str, str]) -> None:
         group.command(name)(one_line_errors(spread(command)))
 
 
+def _moved(name: str, now: str) -> Callable[[typer.Context], None]:
+    def say_so(context: typer.Context) -> None:
+        asked = " ".join(context.args) or "--help"
+        errors.print(
+            f"robobt {name} has moved: in a clone of the repository run {now} {asked}", soft_wrap=True
+        )
+        raise typer.Exit(2)
+
+    return say_so
+
+
 def application(only: str | None = None) -> typer.Typer:
     """Make the application; of one command or group alone where that is all that is asked for."""
-    known = only in _COMMANDS or only in _GROUPS
+    known = only in _COMMANDS or only in _GROUPS or only in _MOVED
     made = typer.Typer(
         no_args_is_help=True,
         add_completion=not known,
@@ -167,6 +160,12 @@ def application(only: str | None = None) -> typer.Typer:
             group.callback()(lambda: None)
             _enter(group, commands)
             made.add_typer(group, name=name)
+    anything = {"ignore_unknown_options": True, "allow_extra_args": True}
+    for name, now in _MOVED.items():
+        if name == only or not known:
+            made.command(name, hidden=True, add_help_option=False, context_settings=anything)(
+                _moved(name, now)
+            )
     return made
 
 

@@ -17,7 +17,6 @@ from robobt.plays import PLAYS, python_files
 from robobt.skills import SKILLS
 from robobt.skills.aim.raters import RATERS
 from robobt.skills.ball.go_to_ball import POLICIES
-from robobt.tree.bench import bench_tree
 from tests.match.scripted import data
 from tests.registries import temporarily
 
@@ -30,9 +29,6 @@ COMMANDS = (
     "raters",
     "policies",
     "tree",
-    "bench sim",
-    "bench match",
-    "bench tree",
 )
 MINE = """
 from robobt.plays import PLAYS
@@ -450,37 +446,11 @@ class TestTree:
         assert said == f"robobt: {mine}:2: AttributeError: 'int' object has no attribute 'y'\n"
 
 
-@pytest.mark.integration
-class TestBench:
-    def test_the_simulator(self):
-        printed = told("bench", "sim", "--seconds", "0.1")
-        assert list(printed) == ["one_v_one", "six_v_six", "eleven_v_eleven"]
-        explained = help_of("bench sim")
-        for case, figures in printed.items():
-            assert case in explained
-            assert all(key in explained for key in figures)
-            assert figures["steps_per_s"] > 0
-
-    def test_a_match(self, scenario: Path):
-        printed = told("bench", "match", scenario, "--seconds", "1")
-        explained = help_of("bench match")
-        assert all(key in explained for key in printed)
-        assert printed["real_time_factor"] == pytest.approx(printed["simulated_s"] / printed["wall_s"])
-        assert printed["real_time_factor_py_trees"] > 0
-        assert printed["recording_share"] < 1
-        assert 0 <= printed["referee_share"] < 1
-        assert "times real time" in robobt("bench", "match", scenario, "--seconds", "1").stdout
-
-    def test_trees(self, monkeypatch: pytest.MonkeyPatch):
-        monkeypatch.setattr("robobt.tree.bench.bench_tree", lambda: bench_tree(rounds=1, ticks=20))
-        printed = told("bench", "tree")
-        explained = help_of("bench tree")
-        for key in ("speedup_vs_py_trees", "ratio_to_plain_classes", "store_speedup_vs_blackboard"):
-            assert key in explained
-            assert printed[key] > 0
-
-
 class TestErrors:
+    def test_a_command_that_has_moved_says_how_it_is_run_now(self):
+        said = complaint("bench", "tree", "--json", code=2)
+        assert said.endswith("in a clone of the repository run python -m benchmarks tree --json\n")
+
     def test_a_missing_scenario_is_named_and_those_there_are(self):
         assert complaint("match", "nowhere").startswith("robobt: nowhere: no such file or bundled scenario; ")
 

@@ -177,26 +177,3 @@ def test_log_writes_what_is_heard(tmp_path: Path) -> None:
     assert printed == {"vision": 0, "tracker": 0, "referee": 0}
     assert list(read_log(out)) == []
     assert "must end in .log" in robobt("log", tmp_path / "heard.txt", code=2)
-
-
-@pytest.mark.integration
-def test_the_filter_is_measured() -> None:
-    play = json.loads(robobt("bench", "filter", "--seconds", 2, "--json"))["play"]
-    assert play["compensated"]["robot_position"] < play["uncompensated"]["robot_position"]
-    printed = robobt("bench", "filter", "--seconds", 2)
-    assert printed.count("at capture") == printed.count("uncompensated") == 2
-
-
-@pytest.mark.slow
-def test_the_league_is_measured_in_two_processes() -> None:
-    printed = json.loads(robobt("bench", "league", "--seconds", 6, "--json"))
-    assert printed["lost"] == printed["errors"] == printed["dropped"] == 0
-    assert printed["frame_rate"] == pytest.approx(60.0, rel=0.02)
-
-
-@pytest.mark.slow
-def test_clocks_are_followed_by_one_command() -> None:
-    rows = json.loads(robobt("bench", "clock", "--seconds", 6, "--json"))["rows"]
-    assert {row["speed"] for row in rows} == {0.25, 0.5, 1.0, 2.0, 4.0}
-    assert all(row["mean_error"] < 0.003 for row in rows)
-    assert "queued" in robobt("bench", "clock", "--seconds", 6)

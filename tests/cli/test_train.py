@@ -54,7 +54,6 @@ def test_the_seed_of_the_settings_is_the_first_unless_another_is_asked_for(tmp_p
         (["train", "shoot", "--set", "agent.tau=7"], "agent.tau"),
         (["train", "shoot", "--set", "tau"], "name=value"),
         (["demonstrations", "shoot", "--by", "magic", "--out", "x"], "skill or script"),
-        (["bench", "train", "shoot", "--only", "magic"], "no variant is called 'magic'"),
     ],
 )
 def test_what_is_wrong_is_said_in_a_line(arguments, said, tmp_path, monkeypatch):
@@ -75,11 +74,3 @@ def test_demonstrations_are_recorded_by_one_command(tmp_path):
     assert recorded.about["teacher"] == "skill"
     spoken = run("demonstrations", "shoot", "-n", 2, "-o", tmp_path / "e.parquet", "--by", "script")
     assert "2 episodes" in spoken.output
-
-
-@pytest.mark.integration
-def test_the_switches_are_compared_by_one_command(tmp_path):
-    told = run("bench", "train", "shoot", "--seeds", 1, "--only", "fast", *OPTIONS, "--out", tmp_path)
-    assert told.exit_code == 0, told.output
-    assert "the bar" in told.output
-    assert (tmp_path / "comparison.md").read_text().count("\n") == 3

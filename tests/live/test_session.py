@@ -7,7 +7,7 @@ from time import perf_counter
 
 import pytest
 
-from robobt.live.bench import bench_live
+from benchmarks.live import bench_live
 from robobt.live.messages import Act, Pause, Seek, Speed
 from robobt.live.replayed import Replay
 from robobt.live.server import Server

@@ -10,8 +10,6 @@ from robobt.config.errors import ConfigError, unknown_name
 from robobt.config.yaml import read_yaml
 
 _PRESETS = Path(__file__).parent / "presets"
-SWITCHES = _PRESETS / "switches.yaml"
-"""The changes to the fast preset that ``robobt bench train`` compares."""
 
 
 class SettingsError(ConfigError):

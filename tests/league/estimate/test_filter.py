@@ -8,7 +8,7 @@ from math import cos, hypot, inf, pi, sin, sqrt
 import numpy as np
 import pytest
 
-from robobt.league.bench_filter import Rms, bench_filter
+from benchmarks.filter import Rms, bench_filter
 from robobt.league.estimate.ball_track import BallMotion, predict_ball
 from robobt.league.estimate.filter import VisionFilter
 from robobt.league.wire.vision import BallDetection, CameraFrame, RobotDetection

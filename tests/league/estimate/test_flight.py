@@ -7,7 +7,7 @@ from math import hypot
 import numpy as np
 import pytest
 
-from robobt.league.bench_chips import bench_chips
+from benchmarks.chips import bench_chips
 from robobt.league.estimate.ball_track import BallMotion
 from robobt.league.estimate.filter import VisionFilter
 from robobt.league.estimate.flight import FlightWatch

@@ -4,8 +4,8 @@ import json
 
 import pytest
 
+from benchmarks.train import compare, table_of
 from robobt.learning.agents.networks import Actor
-from robobt.learning.training.compare import compare, table_of
 from robobt.learning.training.results import Validation, first_reaching, summary_of
 from robobt.learning.training.run_folder import load_run
 from robobt.learning.training.seeds import train_seeds

@@ -2,10 +2,10 @@ from __future__ import annotations
 
 import pytest
 
+from benchmarks.train import variants
 from robobt.config.yaml import parse_marked, write_yaml
 from robobt.learning import TASKS
 from robobt.learning.agents.settings import AgentSettings, PPOSettings
-from robobt.learning.training.compare import variants
 from robobt.learning.training.preset_files import assign, presets
 from robobt.learning.training.run_folder import SETTINGS, RunFolderError, read_settings
 from robobt.learning.training.setting_groups import (

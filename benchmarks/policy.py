@@ -1,0 +1,93 @@
+"""How much a leaf adds to the network it runs."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Annotated
+
+import numpy as np
+import torch
+import typer
+
+from benchmarks.tree import medians, print_figures
+from robobt.cli.common import Json, errors
+from robobt.models.policy import bare_module, load_policy
+from robobt.skills.ball.go_to_ball import GoToBall
+from robobt.skills.ball.learned_skill import LearnedSkill
+from robobt.skills.ball.shoot import Shoot
+from robobt.skills.store import Store
+from robobt.tree import Behaviour, TreeRunner
+from robobt.world.command import RobotCommand
+from robobt.world.field import DIVISION_B
+from robobt.world.state import BallState, Frame, RobotState
+
+
+def bench_policy(
+    model: str | Path = "go_to_ball_ddpg", rounds: int = 25, calls: int = 400
+) -> dict[str, float]:
+    """Measure one inference through a leaf beside the same frozen module called on a tensor, batch 1.
+
+    Through the leaf is a whole tick: the observation from the frame, the network,
+    the check of its answer, the command, and the runner of the tree around it. The
+    cases take turns, so that whatever else the machine does meets them all; each
+    figure is the median of its CPU times.
+
+    Returns:
+        ``leaf_to_module_ratio``, a tick of :class:`LearnedSkill` over a call of the bare
+        frozen module; ``skill_to_module_ratio``, the same of the model's own skill
+        (GoToBall or Shoot), where it has one; and the microseconds that they come from,
+        under names in ``_us``.
+
+    Raises:
+        ModelError: the model cannot be used, or is not a TorchScript file.
+    """
+    policy = load_policy(model)
+    cases: dict[str, Callable[[], object]] = {
+        "module_us": bare_module(policy),
+        "leaf_us": _ticking(LearnedSkill(model=str(model))),
+    }
+    own: dict[str, Callable[..., Behaviour]] = {"GoToBall": GoToBall, "Shoot": Shoot}
+    if policy.card.skill in own:
+        cases["skill_us"] = _ticking(own[policy.card.skill](policy=str(model)))
+    us = medians(cases, rounds, calls)
+    figures = {"leaf_to_module_ratio": us["leaf_us"] / us["module_us"]}
+    if "skill_us" in us:
+        figures["skill_to_module_ratio"] = us["skill_us"] / us["module_us"]
+    return {**figures, **us}
+
+
+def _ticking(leaf: Behaviour) -> Callable[[], object]:
+    """Ticks of a leaf on a frame in which the robot has the ball to get, or in its mouth."""
+    far = not isinstance(leaf, Shoot)
+    me = RobotState(0, -1.0, 0.5, 0.4, 0.3, -0.2, 0.1, ball_contact=not far)
+    ball = BallState(1.0, -0.5) if far else BallState(-1.0 + 0.1 * np.cos(0.4), 0.5 + 0.1 * np.sin(0.4))
+    store = Store(Frame(0.0, DIVISION_B, ball, (me,), period=0.03), me)
+    runner = TreeRunner(leaf, store, on_error="raise")
+    tick = runner.tick
+
+    def once() -> None:
+        store.command = RobotCommand()
+        tick()
+
+    return once
+
+
+def policy(
+    model: Annotated[
+        str, typer.Option("--model", help="Name or file of a TorchScript policy.")
+    ] = "go_to_ball_ddpg",
+    as_json: Json = False,
+) -> None:
+    """Measure one inference through the leaf beside the bare frozen module, batch 1, on one core.
+
+    Keys of --json: leaf_to_module_ratio (a whole tick of LearnedSkill, from the
+    frame to the command, over a call of the module on a tensor),
+    skill_to_module_ratio (the same of the model's own skill) and the
+    microseconds that they come from. CPU time, medians.
+    """
+
+    torch.set_num_threads(1)
+    with errors.status("measuring policies"):
+        figures = bench_policy(model)
+    print_figures(figures, as_json)

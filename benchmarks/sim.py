@@ -1,0 +1,220 @@
+"""How fast the simulator is: a match with frames and commands beside the bare space, and many arenas."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import atan2, cos, pi, sin
+from time import perf_counter, process_time
+from typing import Annotated
+
+import numpy as np
+import typer
+
+from robobt.cli.common import Json, console, errors, print_json, table
+from robobt.sim.arenas import Arenas
+from robobt.sim.records import COMMAND, size
+from robobt.sim.settings import preset
+from robobt.sim.world import SimWorld
+from robobt.world.command import RobotCommand
+from robobt.world.field import DIVISION_A, DIVISION_B
+from robobt.world.game import Team
+from robobt.world.protocol import Placement
+from robobt.world.state import Frame, RobotId, RobotState
+
+CASES = {"one_v_one": 1, "six_v_six": 6, "eleven_v_eleven": 11}
+"""Keys of the benchmark's result and robots a team."""
+
+PERIOD = 0.025
+"""Control period, five sub-steps [s]."""
+
+
+SIDES = (1, 2, 3, 6)
+"""Robots a team in the crowded arenas."""
+
+ARENAS = (64, 256, 1024)
+"""How many of them there are."""
+
+TRAINING_PERIOD, TRAINING_STEPS = 0.03, 4
+"""Control period of training and physics steps in it [s]."""
+
+
+def bench_arenas(
+    seconds: float = 2.0, sides: Sequence[int] = SIDES, arenas: Sequence[int] = ARENAS
+) -> dict[int, dict[int, float]]:
+    """Measure crowded play in many arenas on one core: everybody drives at the ball, dribbles and kicks.
+
+    Args:
+        seconds: CPU time for each figure. They begin in a ring of 0.8 m around the ball, meet within a second
+            that does not count, and begin anew after two more: the same play whatever their number. The
+            median step counts.
+        sides: robots a team.
+        arenas: how many of them.
+
+    Returns:
+        for each of ``sides`` and each of ``arenas``, control steps a second of CPU time, all arenas
+        together. Deciding what to do is not in the time.
+    """
+    return {side: {n: _crowded(side, n, seconds) for n in arenas} for side in sides}
+
+
+def _crowded(side: int, n: int, seconds: float) -> float:
+    settings = preset("default").model_copy(update={"sub_step": TRAINING_PERIOD / TRAINING_STEPS})
+    arenas = Arenas(DIVISION_B, [None] * (2 * side), settings, TRAINING_PERIOD, n)
+    angles = np.random.default_rng(0).uniform(0, 2 * pi, (n, 1)) + np.arange(2 * side) * pi / side
+    starts = np.stack([0.8 * np.cos(angles), 0.8 * np.sin(angles), angles + pi], axis=-1)
+    commands = np.zeros((n, 2 * side, size(COMMAND)))
+    told = commands.view(COMMAND)[..., 0]
+    spent: list[float] = []
+    second = round(1.0 / TRAINING_PERIOD)
+    while sum(spent) < seconds:
+        arenas.place(starts, np.zeros((n, 4)))
+        for step in range(3 * second):
+            gap = arenas.balls[:, None, :2] - arenas.robots[..., :2]
+            error = np.arctan2(gap[..., 1], gap[..., 0]) - arenas.robots[..., 2]
+            told["vx"], told["vy"] = 2.0 * np.cos(error), 2.0 * np.sin(error)
+            told["omega"] = 5.0 * np.sin(error)
+            told["kick_speed"] = np.where(arenas.contact, 2.0, 0.0)
+            told["dribbler"] = 1.0
+            begin = process_time()
+            arenas.step(commands)
+            if step >= second:
+                spent.append(process_time() - begin)
+    return float(n / np.median(spent))
+
+
+def bench_sim(seconds: float = 4.0) -> dict[str, dict[str, float]]:
+    """Measure each of :data:`CASES` on one core.
+
+    Everybody chases the ball, dribbles and kicks it, so that robots and ball
+    move and meet. A control step observes a frame, makes both teams' views,
+    takes a command a robot and advances the physics. ``bare_ratio`` divides its
+    time by that of stepping the same space with pymunk's own call and nothing else.
+
+    Args:
+        seconds: how long to measure each case, in chunks of 200 steps with frames
+            and 200 bare ones in turn; the fastest chunk of each counts.
+
+    Returns:
+        for each case: ``steps_per_s``, ``bare_steps_per_s``, ``bare_ratio`` and
+        ``contacts_per_s``, ball touches by another robot than before and kicks
+        per simulated second, which show that things do meet.
+    """
+    return {name: _measure(count, seconds) for name, count in CASES.items()}
+
+
+def _measure(count: int, seconds: float) -> dict[str, float]:
+    world = _crowd(count)
+    _play(world, 50)
+    # A chunk long enough that reading the clock costs nothing, and short enough
+    # that some of many fall into a quiet moment of a machine that others use too.
+    chunk = 200
+    best = bare = 0.0
+    meetings = steps = 0
+    end = perf_counter() + seconds
+    while perf_counter() < end:
+        begin = perf_counter()
+        meetings += _play(world, chunk)
+        best = max(best, chunk / (perf_counter() - begin))
+        steps += chunk
+        begin = perf_counter()
+        for _ in range(chunk):
+            world.step_bare()
+        bare = max(bare, chunk / (perf_counter() - begin))
+    return {
+        "steps_per_s": best,
+        "bare_steps_per_s": bare,
+        "bare_ratio": bare / best,
+        "contacts_per_s": meetings / (steps * PERIOD),
+    }
+
+
+def _crowd(count: int) -> SimWorld:
+    ids = [RobotId(team, number) for team in Team for number in range(count)]
+    world = SimWorld(DIVISION_A, dict.fromkeys(ids), preset("default"), PERIOD)
+    poses = {}
+    for i, robot in enumerate(ids):
+        angle = 2 * pi * i / len(ids)
+        poses[robot] = (3.0 * cos(angle), 3.0 * sin(angle), angle + pi)
+    world.reset(Placement(poses), seed=0)
+    return world
+
+
+def _play(world: SimWorld, steps: int) -> int:
+    """Let everybody chase the ball for some steps; how often it changed hands or was kicked."""
+    meetings = 0
+    last = None
+    for _ in range(steps):
+        frame = world.observe()
+        views = {Team.BLUE: frame, Team.YELLOW: frame.mirrored()}
+        commands = {}
+        for team, view in views.items():
+            for robot in view.own:
+                commands[RobotId(team, robot.id)] = _chase(view, robot)
+        world.act(commands)
+        meetings += len(world.kicks) + (frame.last_touch != last)
+        last = frame.last_touch
+    return meetings
+
+
+def _chase(view: Frame, robot: RobotState) -> RobotCommand:
+    ball = view.ball
+    error = atan2(ball.y - robot.y, ball.x - robot.x) - robot.heading
+    return RobotCommand(
+        2.0 * cos(error),
+        2.0 * sin(error),
+        5.0 * sin(error),
+        3.0 if robot.ball_contact else 0.0,
+        dribbler=True,
+    )
+
+
+def sim(
+    seconds: Annotated[
+        float, typer.Option("--seconds", min=0.1, max=60, help="How long to measure each case.")
+    ] = 4.0,
+    as_json: Json = False,
+) -> None:
+    """Measure the simulator: control steps a second with frames and commands, 25 ms control.
+
+    Keys of --json: one_v_one, six_v_six and eleven_v_eleven, each with
+    steps_per_s, bare_steps_per_s (the same space stepped by pymunk alone),
+    bare_ratio (time of a step over that of a bare one) and contacts_per_s
+    (how often the ball meets robots, a simulated second).
+    """
+
+    with errors.status("measuring the simulator"):
+        figures = bench_sim(seconds=seconds)
+    if as_json:
+        print_json(figures)
+        return
+    listed = table("case", "steps/s", "bare steps/s", "ratio to bare")
+    for case, figure in figures.items():
+        listed.add_row(
+            case.replace("_", " "),
+            f"{figure['steps_per_s']:,.0f}",
+            f"{figure['bare_steps_per_s']:,.0f}",
+            f"{figure['bare_ratio']:.2f}",
+        )
+    console.print(listed)
+
+
+def arenas(
+    seconds: Annotated[
+        float, typer.Option("--seconds", min=0.1, max=60, help="How long to measure each figure.")
+    ] = 2.0,
+    as_json: Json = False,
+) -> None:
+    """Measure crowded play in many arenas: control steps a second of CPU time, 4 physics steps in 30 ms.
+
+    Keys of --json: by robots a team, by number of arenas, the steps a second of all arenas together.
+    """
+
+    with errors.status("measuring many arenas"):
+        figures = bench_arenas(seconds=seconds)
+    if as_json:
+        print_json({str(side): speeds for side, speeds in figures.items()})
+        return
+    listed = table("a team", *(f"{n:,} arenas" for n in ARENAS))
+    for side, speeds in figures.items():
+        listed.add_row(str(side), *(f"{speeds[n]:,.0f}" for n in ARENAS))
+    console.print(listed)

@@ -1,1 +1,0 @@
-"""``robobt bench``: measurements."""
