@@ -136,9 +136,10 @@ class BallTrack:
         self._rolling = predict_ball(self._rolling, dt, self.settings)
         shift = self._covariance.settle(dt)
         if shift is not None:
+            dx, dy = shift
             for motion in (self._sliding, self._rolling):
-                motion.x += shift[0]
-                motion.y += shift[1]
+                motion.x += dx
+                motion.y += dy
         noise = _RESTING_NOISE if hypot(self.motion.vx, self.motion.vy) < _ROLLS else _ROLLING_NOISE
         noise = _PUSHED_NOISE if near_robot else noise + self._mismatch.level * _PUSHED_NOISE
         self._covariance.predict(noise, dt)

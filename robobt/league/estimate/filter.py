@@ -18,6 +18,7 @@ from robobt.league.estimate.robot_track import (
     RobotMotion,
     RobotSensing,
     RobotTrack,
+    Sent,
     SentCommands,
     predict_robot,
 )
@@ -30,6 +31,9 @@ from robobt.world.game import Team
 from robobt.world.limits import RobotLimits
 from robobt.world.sketch import Sketch
 from robobt.world.state import RECEIVED_HEIGHT, ROBOT_HEIGHT, BallState, Frame, RobotId, RobotState
+
+_NEVER = -inf, 0
+"""No odd capture time, and how many frames had it."""
 
 _MIN_ROBOT_NOISE, _MIN_BALL_NOISE, _MIN_HEADING_NOISE = 0.0013, 0.0014, 0.01
 """Noise that is always assumed [m, m, rad]. Source: ER-Force's Realistic."""
@@ -101,7 +105,7 @@ class VisionFilter:
         self._ball_noise = max(realism.ball_noise, _MIN_BALL_NOISE)
         self.restarts = 0
         self.cameras: dict[int, CameraPlace] = {}
-        self._odd_time: tuple[float, int] | None = None
+        self._odd_time = _NEVER
         self._ball_seen = 0.0
         self.clear()
 
@@ -127,9 +131,9 @@ class VisionFilter:
         """Record the commands that take effect at ``time``, for predictions."""
         for robot, command in commands.items():
             queue = self._sent.setdefault(robot, [])
-            queue.append((time, command))
+            queue.append(Sent(time, command))
             # The last command before the horizon has to stay: it is still in force.
-            while len(queue) > 1 and queue[1][0] < time - _COMMAND_MEMORY:
+            while len(queue) > 1 and queue[1].since < time - _COMMAND_MEMORY:
                 queue.pop(0)
 
     def put_ball(self, x: float, y: float) -> None:
@@ -154,7 +158,7 @@ class VisionFilter:
             if not -_JUMP_BACK < time - self.captured < _JUMP_AHEAD:
                 self.restarts += now is None or not self.captured - _JUMP_BACK < time < now + _JUMP_AHEAD
                 self.clear()
-        self._odd_time = None
+        self._odd_time = _NEVER
         last = self._cameras.get(frame.camera)
         if last is not None and time <= last:
             return False
@@ -226,9 +230,8 @@ class VisionFilter:
 
     def _confirmed_time(self, time: float) -> bool:
         """Return whether enough consecutive frames had about this odd capture time."""
-        count = 1
-        if self._odd_time is not None and abs(time - self._odd_time[0]) < _GAP:
-            count = self._odd_time[1] + 1
+        before, count = self._odd_time
+        count = count + 1 if abs(time - before) < _GAP else 1
         self._odd_time = (time, count)
         return count >= _CONFIRMATIONS
 

@@ -24,24 +24,27 @@ def flat_misfit(times: FloatArray, places: FloatArray, ball: BallSettings) -> fl
         ball: how it is expected to slide and roll.
     """
     middle = places.mean(axis=0)
-    _, _, axes = np.linalg.svd(places - middle)
-    along, aside = (places - middle) @ axes[0], (places - middle) @ axes[1]
+    _, _, (ahead, left) = np.linalg.svd(places - middle)
+    along, aside = (places - middle) @ ahead, (places - middle) @ left
     if along[-1] < along[0]:
         along = -along
-    t = times - times[0]
-    off = min(_braking(along, t, ball), _sliding(along, t, float(times[0]), ball))
+    gap, *_ = times.tolist()
+    t = times - gap
+    off = min(_braking(along, t, ball), _sliding(along, t, gap, ball))
     return float(aside @ aside) + off
 
 
 def _braking(along: FloatArray, t: FloatArray, ball: BallSettings) -> float:
     """Return the squared misfit of a ball with one deceleration, at most that of sliding."""
-    rows = np.column_stack((np.ones_like(t), t, -0.5 * t * t))
-    found = np.linalg.lstsq(rows, along, rcond=None)[0]
-    brake = min(max(float(found[2]), 0.0), ball.slide_deceleration)
-    if brake != found[2]:
-        along = along - brake * rows[:, 2]
+    lag = -0.5 * t * t
+    rows = np.column_stack((np.ones_like(t), t, lag))
+    found, *_ = np.linalg.lstsq(rows, along, rcond=None)
+    *_, braking = found.tolist()
+    brake = min(max(braking, 0.0), ball.slide_deceleration)
+    if brake != braking:
+        along = along - brake * lag
         rows = rows[:, :2]
-        found = np.linalg.lstsq(rows, along, rcond=None)[0]
+        found, *_ = np.linalg.lstsq(rows, along, rcond=None)
     off = rows @ found - along
     return float(off @ off)
 

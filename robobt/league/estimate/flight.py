@@ -185,10 +185,10 @@ class FlightWatch:
         first, middle, last = self._recent[-5], self._recent[-3], self._recent[-1]
         if not first.time < middle.time < last.time:
             return
-        speeds = [
+        before, after = (
             hypot(b.x - a.x, b.y - a.y) / (b.time - a.time) for a, b in ((first, middle), (middle, last))
-        ]
-        if speeds[1] > speeds[0] + _FASTER:
+        )
+        if after > before + _FASTER:
             self._before, self._unknown = first, True
             self._since = [seen for seen in self._recent if seen.time > first.time]
 
@@ -208,7 +208,8 @@ class FlightWatch:
             return
         hop, misfit = self._launch(before)
         along, rise = hypot(hop.ball.vx, hop.ball.vy), hop.ball.vz
-        can_be = rise > _LEAST_RISE and _ELEVATION[0] * along < rise < _ELEVATION[1] * along
+        least, most = _ELEVATION
+        can_be = rise > _LEAST_RISE and least * along < rise < most * along
         if self._unknown:
             can_be = (
                 along > _LEAST_RISE and 2.0 * GRAVITY * max(hop.ball.z, 0.0) + rise * rise > _LEAST_RISE**2
@@ -223,9 +224,9 @@ class FlightWatch:
             found, misfit = self._fit(self._since, before.time, _still(before), _ANYWHERE)
             return _hop(before.time, found, 0), misfit
         newest = self._since[-1]
-        way = newest.x - before.x, newest.y - before.y
-        length = hypot(*way)
-        lean = np.array([0.0, 0.0, -way[0] / length, -way[1] / length, 0.0, 1.0])
+        dx, dy = newest.x - before.x, newest.y - before.y
+        length = hypot(dx, dy)
+        lean = np.array([0.0, 0.0, -dx / length, -dy / length, 0.0, 1.0])
         lean /= _USUAL * length / (newest.time - before.time)
         rest, tried = 2 * len(self._since) - 5, []
         for i, last in enumerate(self._last):

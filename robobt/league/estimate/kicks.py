@@ -95,9 +95,10 @@ class KickWatch:
         elapsed = time - self._time
         if elapsed < _SHORTEST:
             return None
-        speed = hypot(x - self._ball[0], y - self._ball[1]) / elapsed
+        (x_before, y_before), (earlier, last) = self._ball, self._speeds
+        speed = hypot(x - x_before, y - y_before) / elapsed
         # A kick between two detections shows half its speed at the first of them.
-        faster = speed - min(self._speeds)
+        faster = speed - min(earlier, last)
         kick: Kick | None = None
         nearest = _NEAR + self._place
         for robot, m in motions.items():
@@ -124,7 +125,7 @@ class KickWatch:
                     if fresh and (kick is None or near < nearest):
                         kick, nearest = Kick(robot, on_its_way.since), near
             self._seen[robot] = _Seen(ahead, aside, leaves)
-        self._time, self._ball, self._speeds = time, (x, y), (self._speeds[1], speed)
+        self._time, self._ball, self._speeds = time, (x, y), (last, speed)
         if kick is not None:
             self._kicked[kick.robot] = kick.time
             self._leaving.clear()

@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from math import exp, hypot, inf
+from operator import itemgetter
 from typing import Protocol, TypeVar
 
 _MEMORY = 1.0
@@ -121,8 +122,9 @@ class Rivals:
             if gap <= self._reach or (gap <= gate and not self._doubts(found, track_seen))
         ]
         surest = max((found.confidence for _, found in own), default=0.0)
-        sure = [each for each in own if each[1].confidence >= _SURE * surest]
-        return min(sure, key=lambda each: each[0])[1] if sure else None
+        sure = [(gap, found) for gap, found in own if found.confidence >= _SURE * surest]
+        _, nearest = min(sure, key=itemgetter(0), default=(0.0, None))
+        return nearest
 
     def _doubts(self, found: _Detection, track_seen: float) -> bool:
         """Return whether a detection that the track may have reached is another's.
@@ -185,10 +187,11 @@ class Rivals:
         return rival
 
     def _at(self, x: float, y: float, time: float) -> _Rival | None:
-        near: tuple[float, _Rival | None] = (inf, None)
+        nearest: _Rival | None = None
+        least = inf
         for rival in self._known:
             gap = hypot(x - rival.x, y - rival.y)
             elapsed = min(_LONGEST_GAP, max(0.0, time - rival.time))
-            if gap <= self._reach + self._speed * elapsed and gap < near[0]:
-                near = gap, rival
-        return near[1]
+            if gap <= self._reach + self._speed * elapsed and gap < least:
+                nearest, least = rival, gap
+        return nearest

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from math import cos, hypot, sin, sqrt
+from typing import NamedTuple
 
 from robobt.league.estimate.kalman import Mismatch
 from robobt.league.estimate.offsets import MeanOffsets, OffsetCovariance
@@ -17,7 +18,15 @@ from robobt.world.command import RobotCommand
 from robobt.world.geometry import wrap_angle
 from robobt.world.limits import RobotLimits
 
-SentCommands = list[tuple[float, RobotCommand]]
+
+class Sent(NamedTuple):
+    """A command, and when it takes effect [s]."""
+
+    since: float
+    command: RobotCommand
+
+
+SentCommands = list[Sent]
 """A robot's commands and when they take effect [s], oldest first."""
 
 
@@ -127,11 +136,13 @@ class RobotTrack:
         after = self.motion = predict_robot(before, self.time, time, commands, self.limits)
         shift = self._position.settle(dt)
         if shift is not None:
-            after.x += shift[0]
-            after.y += shift[1]
+            dx, dy = shift
+            after.x += dx
+            after.y += dy
         shift = self._heading.settle(dt)
         if shift is not None:
-            after.heading = wrap_angle(after.heading + shift[0])
+            (turn,) = shift
+            after.heading = wrap_angle(after.heading + turn)
         acceleration = hypot(after.vx - before.vx, after.vy - before.vy) / dt
         turn_acceleration = abs(after.omega - before.omega) / dt
         self._position.predict(
@@ -218,11 +229,11 @@ def predict_robot(
     now = start
     index = 0
     while now < end - 1e-9:
-        while index < len(commands) and commands[index][0] <= now + 1e-9:
+        while index < len(commands) and commands[index].since <= now + 1e-9:
             index += 1
-        until = min(end, commands[index][0]) if index < len(commands) else end
+        until = min(end, commands[index].since) if index < len(commands) else end
         until = min(until, now + _STEP)
-        _drive(state, commands[index - 1][1] if index else None, limits, until - now)
+        _drive(state, commands[index - 1].command if index else None, limits, until - now)
         now = until
     return state
 

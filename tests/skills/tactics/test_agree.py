@@ -11,7 +11,7 @@ from robobt.skills.plan import Omitted, Task
 from robobt.skills.tactics.agree import pass_under_way
 from robobt.skills.tactics.attacker import NOBODY, Candidate, choose_attacker
 from robobt.skills.tactics.chances import rate_points
-from robobt.skills.tactics_settings import DEFAULT_TACTICS, applied
+from robobt.skills.tactics_settings import DEFAULT_TACTICS, TacticsSettings, applied
 from robobt.world import DIVISION_B, RobotLimits, Team
 from robobt.world.ball_model import DEFAULT_BALL
 from robobt.world.geometry import Point, distance
@@ -167,6 +167,20 @@ def test_supporters_stand_apart() -> None:
         plan = agreement.at(step / 60, held(own[5]), own=own)
     places = [plan.places[number] for number, task in plan.tasks.items() if task is Task.SUPPORT]
     assert min(distance(a, b) for i, a in enumerate(places) for b in places[:i]) > 0.7
+
+
+@pytest.mark.parametrize(("stay", "stays"), [(1.25, True), (1.0, False)])
+def test_supporters_stay_though_the_ball_moves_a_little(stay: float, stays: bool) -> None:
+    agreement = Agreement()
+    agreement.team.plan.tactics = TacticsSettings(stay=stay)
+    chosen = []
+    for x, y in (SIX[5].position, (SIX[5].x + 0.1, SIX[5].y + 0.1)):
+        holder = robot(x, y, number=5, contact=True)
+        for step in range(40):
+            time = len(chosen) + step / 60
+            plan = agreement.at(time, held(holder), own=(*SIX[:5], holder))
+        chosen.append(plan.support)
+    assert (chosen[0] == chosen[1]) is stays
 
 
 def test_who_has_passed_runs_to_where_the_ball_can_come_back_to_it() -> None:
