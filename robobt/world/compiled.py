@@ -61,7 +61,7 @@ def _compiled(function: Function, **options: Any) -> Function:
     made = njit(**options)(function)
     # A read-only installation, run by somebody without a home, keeps nothing: compile anew each time.
     with suppress(RuntimeError):
-        made._cache = DeepCache(function)  # type: ignore[no-untyped-call]
+        made._cache = DeepCache(function)
     return cast(Function, made)
 
 

@@ -12,14 +12,30 @@ from hashlib import sha256
 from types import CodeType, FunctionType
 
 import numpy as np
-from numba.core.caching import FunctionCache
+from numba.core.caching import FunctionCache, IndexDataCacheFile
 from numba.core.dispatcher import Dispatcher
 
 _CONSTANTS = (bool, int, float, str, tuple, frozenset, np.generic, np.dtype)
 
 
+class _Index(IndexDataCacheFile):
+    """Numba's index of what was kept, which may name types that are there no more."""
+
+    def _load_index(self) -> dict[object, str]:
+        try:
+            kept: dict[object, str] = super()._load_index()  # type: ignore[no-untyped-call]
+        except (AttributeError, ImportError):
+            return {}
+        return kept
+
+
 class DeepCache(FunctionCache):
     """Numba's cache of a function's compiled code, which also asks what the function calls."""
+
+    def __init__(self, function: Callable[..., object]) -> None:
+        super().__init__(function)  # type: ignore[no-untyped-call]
+        base, stamp = self._impl.filename_base, self._impl.locator.get_source_stamp()
+        self._cache_file = _Index(self._cache_path, base, stamp)  # type: ignore[no-untyped-call]
 
     def _index_key(self, sig: object, codegen: object) -> tuple[object, ...]:
         own: tuple[object, ...] = super()._index_key(sig, codegen)  # type: ignore[no-untyped-call]

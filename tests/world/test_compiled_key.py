@@ -52,6 +52,32 @@ def test_code_is_compiled_anew_where_something_that_it_calls_has_changed(tmp_pat
     assert len(answer(tmp_path, 2.0, 0.5)) == 2
 
 
+KINDS = """
+from typing import NamedTuple
+class {name}(NamedTuple):
+    x: float
+def made():
+    return {name}(2.0)
+"""
+USER = """
+from kinds import made
+from robobt.world.compiled import compiled
+@compiled
+def double(kind):
+    return 2.0 * kind.x
+print(double(made()), len(double.stats.cache_hits))
+"""
+
+
+def test_what_was_kept_for_a_type_that_is_no_more_is_left_alone(tmp_path: Path) -> None:
+    (tmp_path / "user.py").write_text(USER)
+    run = [sys.executable, "-B", "user.py"]
+    for name, hits in (("Old", 0), ("Old", 1), ("New", 0), ("New", 1)):
+        (tmp_path / "kinds.py").write_text(KINDS.format(name=name))
+        done = subprocess.run(run, cwd=tmp_path, capture_output=True, text=True, check=True, timeout=LIMIT)
+        assert done.stdout.split() == ["4.0", str(hits)]
+
+
 FACTORS = np.array([1.0, 2.0])
 
 
