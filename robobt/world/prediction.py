@@ -6,6 +6,7 @@ from collections import deque
 from collections.abc import Mapping
 from dataclasses import replace
 from math import ceil, cos, exp, hypot, sin, sqrt
+from typing import NamedTuple
 
 from robobt.world.ball_model import GRAVITY
 from robobt.world.command import RobotCommand
@@ -36,6 +37,20 @@ _FADES = 0.04
 """How a ball was seen to move that several robots hold counts for a third after so long [s]."""
 
 
+class _Sent(NamedTuple):
+    """What was sent at which frame's time [s]."""
+
+    time: float
+    commands: Mapping[RobotId, RobotCommand]
+
+
+class _Seen(NamedTuple):
+    """A robot as it was seen last, and from when on its commands count [s]."""
+
+    robot: RobotState
+    since: float
+
+
 class PredictedWorld(WrappedWorld):
     """A world whose frames show where everything is now, as far as that follows from the commands sent.
 
@@ -58,9 +73,8 @@ class PredictedWorld(WrappedWorld):
         self.vision_delay = vision_delay
         self.command_delay = command_delay
         self._gaps = gaps
-        # What was sent at which frame's time, newest last.
-        self._sent: deque[tuple[float, Mapping[RobotId, RobotCommand]]] = deque(maxlen=64)
-        self._missed: dict[RobotId, tuple[RobotState, float]] = {}
+        self._sent: deque[_Sent] = deque(maxlen=64)
+        self._missed: dict[RobotId, _Seen] = {}
         self._now = 0.0
 
     def reset(self, placement: Placement, seed: int) -> None:
@@ -86,7 +100,7 @@ class PredictedWorld(WrappedWorld):
 
     def act(self, commands: Mapping[RobotId, RobotCommand]) -> None:
         """See :meth:`robobt.world.World.act`."""
-        self._sent.append((self._now, dict(commands)))
+        self._sent.append(_Sent(self._now, dict(commands)))
         self.world.act(commands)
 
     def _moved(self, robot: RobotId, seen: RobotState) -> RobotState:
@@ -94,15 +108,15 @@ class PredictedWorld(WrappedWorld):
         since = self._now - self.vision_delay
         if self._gaps:
             last = self._missed.get(robot)
-            if last is not None and _same(last[0], seen):
-                since = max(last[1], since - _LONGEST_GAP)
-            self._missed[robot] = (seen, since)
+            if last is not None and _same(last.robot, seen):
+                since = max(last.since, since - _LONGEST_GAP)
+            self._missed[robot] = _Seen(seen, since)
         if since < 0.0:
             since = min(0.0, until)
         state = replace(seen)
         for i, (time, commands) in enumerate(self._sent):
             begin = max(since, time + self.command_delay)
-            end = until if i + 1 == len(self._sent) else self._sent[i + 1][0] + self.command_delay
+            end = until if i + 1 == len(self._sent) else self._sent[i + 1].time + self.command_delay
             if end > begin:
                 _drive(state, commands.get(robot, _STILL), min(end, until) - begin)
         return state
@@ -152,9 +166,9 @@ def _held(ball: BallState, holding: list[tuple[RobotState, RobotState]], age: fl
     count = len(holding)
     x, y, vx, vy = x / count, y / count, vx / count, vy / count
     if fresh:
-        seen = [_velocity(before, ball.x, ball.y) for before, _ in holding]
-        vx += fresh * (ball.vx - sum(each[0] for each in seen) / count)
-        vy += fresh * (ball.vy - sum(each[1] for each in seen) / count)
+        seen_vx, seen_vy = zip(*(_velocity(before, ball.x, ball.y) for before, _ in holding), strict=True)
+        vx += fresh * (ball.vx - sum(seen_vx) / count)
+        vy += fresh * (ball.vy - sum(seen_vy) / count)
     return BallState(x, y, vx, vy)
 
 

@@ -52,6 +52,14 @@ _NAME = re.compile(r"team_view_(\d|10)_(\d|1[01])(|_restarts|_restarts_double_to
 _ME = np.zeros(1, dtype=np.int64)
 
 
+class Places(NamedTuple):
+    """For how many mates and opponents there are places, and how many entries tell of restarts."""
+
+    mates: int
+    opponents: int
+    told: int
+
+
 def team_view(mates: int, opponents: int, told: int = 0) -> ObservationSpec:
     """Return the observation with places for so many mates and opponents, the nearest first.
 
@@ -80,13 +88,13 @@ def team_view(mates: int, opponents: int, told: int = 0) -> ObservationSpec:
     return ObservationSpec(f"team_view_{mates}_{opponents}{_TOLD[told]}", 1, vector)
 
 
-def places_of(name: str) -> tuple[int, int, int] | None:
-    """Return for how many mates and opponents the observation of that name has places; None: no such.
-
-    The third number is how many entries tell of restarts.
-    """
+def places_of(name: str) -> Places | None:
+    """Return the places that the observation of that name has; None: no such."""
     found = _NAME.fullmatch(name)
-    return (int(found[1]), int(found[2]), _TOLD.index(found[3])) if found else None
+    if found is None:
+        return None
+    mates, opponents, told = found.groups()
+    return Places(int(mates), int(opponents), _TOLD.index(told))
 
 
 def team_view_of(
@@ -140,7 +148,7 @@ def team_view_rows(
         post_y: distance of the posts from the field's long axis [m].
         told: how many entries of restarts follow each, left at 0.
     """
-    places = _Places(mates, opponents, told)
+    places = Places(mates, opponents, told)
     rows = np.empty((len(robots), len(who) * _size(places)))
     away = np.empty(mates + opponents)
     everybody, rolling = robots.view(ROBOT)[..., 0], balls.view(BALL_RECORD)[..., 0]
@@ -148,16 +156,8 @@ def team_view_rows(
     return rows
 
 
-class _Places(NamedTuple):
-    """For how many mates and opponents there are places, and how many entries tell of restarts."""
-
-    mates: int
-    opponents: int
-    told: int
-
-
 @compiled_lean
-def _size(places: _Places) -> int:
+def _size(places: Places) -> int:
     return _OWN + _EACH * (places.mates + places.opponents) + places.told
 
 
@@ -167,7 +167,7 @@ def _fill_rows(
     balls: NDArray[np.record],
     who: NDArray[np.int64],
     blue: int,
-    places: _Places,
+    places: Places,
     goal: Point,
     away: FloatArray,
     rows: FloatArray,

@@ -103,7 +103,7 @@ class LearnedControl:
             )
         self._observe: Callable[..., FloatArray] = observe
         places = places_of(name)
-        self.minds_kicker = places is not None and places[2] > 1
+        self.minds_kicker = places is not None and places.told > 1
         self._infer: Callable[[FloatArray], list[float]] | None = None
         self._scaling = self.card.action
         if file.path.parent.resolve() == models_folder().resolve():
@@ -211,7 +211,7 @@ def observer_of(name: str) -> Callable[[Frame, RobotState], FloatArray] | None:
     if places is None:
         own = OWN_OBSERVATIONS.get(name)
         return OBSERVERS.get(name) if own is None else own.of
-    return partial(team_view_of, mates=places[0], opponents=places[1], told=places[2])
+    return partial(team_view_of, **places._asdict())
 
 
 def policies_by_name(registry: Registry[Callable[..., object]], *besides: str) -> ByName:

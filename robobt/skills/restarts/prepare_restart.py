@@ -63,8 +63,9 @@ class PrepareRestart(Skill):
 
 def _before(spot: Point, point: Point, gap: float) -> Point:
     """``gap`` metres from ``spot`` towards ``point``, towards +x where both are one; behind when negative."""
-    dx, dy = point[0] - spot[0], point[1] - spot[1]
+    (x, y), (point_x, point_y) = spot, point
+    dx, dy = point_x - x, point_y - y
     length = hypot(dx, dy)
     if length == 0.0:
-        return (spot[0] + gap, spot[1])
-    return (spot[0] + gap * dx / length, spot[1] + gap * dy / length)
+        return (x + gap, y)
+    return (x + gap * dx / length, y + gap * dy / length)

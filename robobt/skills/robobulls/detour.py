@@ -47,8 +47,9 @@ def first_waypoint(frame: Frame, me: RobotState, goal: Point, *, goalkeeper: boo
 
 def allowed(field: FieldGeometry, point: Point, *, goalkeeper: bool = False) -> Point:
     """Move the point to where a robot may go: 0.1 m inside the lines, out of the defence areas [m]."""
-    x = min(max(point[0], _BORDER - field.half_length), field.half_length - _BORDER)
-    y = min(max(point[1], _BORDER - field.half_width), field.half_width - _BORDER)
+    x, y = point
+    x = min(max(x, _BORDER - field.half_length), field.half_length - _BORDER)
+    y = min(max(y, _BORDER - field.half_width), field.half_width - _BORDER)
     if goalkeeper and x <= 0.0:
         return (x, y)
     sign = 1.0 if x > 0.0 else -1.0
@@ -76,22 +77,21 @@ def _beside(frame: Frame, start: Point, end: Point, obstacle: Point, others: lis
     if length < _STEP:
         return None
     foot = closest_point_on_segment(obstacle, start, end)
-    right = ((end[1] - start[1]) / length, (start[0] - end[0]) / length)
-    left = (-right[0], -right[1])
-    return _free_point(frame, foot, right, obstacle, others) or _free_point(
-        frame, foot, left, obstacle, others
-    )
+    (start_x, start_y), (end_x, end_y) = start, end
+    x, y = (end_y - start_y) / length, (start_x - end_x) / length
+    right = _free_point(frame, foot, (x, y), obstacle, others)
+    return right or _free_point(frame, foot, (-x, -y), obstacle, others)
 
 
 def _free_point(frame: Frame, foot: Point, side: Point, obstacle: Point, others: list[Point]) -> Point | None:
     round_ball = obstacle == frame.ball.position
-    x, y = foot
+    (x, y), (dx, dy) = foot, side
     while frame.field.contains(x, y):
         if not (round_ball and _close((x, y), obstacle, _BALL_FREE)) and all(
             hypot(x - other_x, y - other_y) > _ROBOT_FREE for other_x, other_y in others
         ):
             return (x, y)
-        x, y = x + _STEP * side[0], y + _STEP * side[1]
+        x, y = x + _STEP * dx, y + _STEP * dy
     return None
 
 

@@ -69,14 +69,16 @@ class PositionGrid:
 
     def at(self, value: GridArray, point: Point) -> float:
         """Return ``value`` (X, Y) at the grid point nearest to ``point``; -inf off the grid."""
-        row = round(point[0] / self.spacing)
-        column = round(point[1] / self.spacing) + self._side
+        x, y = point
+        row = round(x / self.spacing)
+        column = round(y / self.spacing) + self._side
         rows, columns = value.shape
         return float(value[row, column]) if 0 <= row < rows and 0 <= column < columns else -inf
 
     def distance_from(self, point: Point) -> GridArray:
         """Return the (X, Y) distances from ``point`` [m]."""
-        distances: GridArray = np.sqrt(np.square(self.x - point[0]) + np.square(self.y - point[1]))
+        x, y = point
+        distances: GridArray = np.sqrt(np.square(self.x - x) + np.square(self.y - y))
         return distances
 
     def count_regions(self, regions: Sequence[Region]) -> NDArray[np.uint8]:
@@ -135,18 +137,19 @@ def lane_shadow(origin: Point, robot: RobotState, radius: float) -> Region:
     Only points farther than the robot count. A robot within ``radius`` shadows
     the whole half plane behind it.
     """
-    dx, dy = robot.x - origin[0], robot.y - origin[1]
+    x, y = origin
+    dx, dy = robot.x - x, robot.y - y
     gap = max(hypot(dx, dy), 1e-9)
     ux, uy = dx / gap, dy / gap
-    behind = (ux, uy, ux * origin[0] + uy * origin[1] + gap)
+    behind = (ux, uy, ux * x + uy * y + gap)
     if gap <= radius:
         return (behind, behind, behind)
     slope = radius / sqrt(gap * gap - radius * radius)
     # slope * along +- across >= 0, both measured from the origin.
     ax, ay = slope * ux - uy, slope * uy + ux
     bx, by = slope * ux + uy, slope * uy - ux
-    left = (ax, ay, ax * origin[0] + ay * origin[1])
-    right = (bx, by, bx * origin[0] + by * origin[1])
+    left = (ax, ay, ax * x + ay * y)
+    right = (bx, by, bx * x + by * y)
     return (behind, left, right)
 
 
