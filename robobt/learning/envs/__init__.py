@@ -28,6 +28,7 @@ from robobt.learning.envs.shoot.rewards import ShootReward as ShootReward
 from robobt.learning.envs.shoot.settings import ShootSettings as ShootSettings
 from robobt.learning.envs.shoot.task import ShootTask as ShootTask
 from robobt.learning.envs.starts import START_COLUMNS as START_COLUMNS
+from robobt.learning.envs.starts import start_parts as start_parts
 from robobt.learning.envs.task import StepResult as StepResult
 from robobt.learning.envs.task import VectorTask as VectorTask
 from robobt.learning.envs.tick import TaskError as TaskError

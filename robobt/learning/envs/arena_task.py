@@ -28,7 +28,7 @@ from robobt.skills.base import Skill
 from robobt.world.compiled import numbers_of
 from robobt.world.features import ObservationSpec
 from robobt.world.limits import RobotLimits
-from robobt.world.observation import Observation, seen
+from robobt.world.observation import Observation, Seen, seen
 from robobt.world.records import BALL
 
 Policy = Callable[[FloatArray], FloatArray]
@@ -123,7 +123,10 @@ class ArenaTask:
         self._own_ends = type(self).ends is not judged_by.__dict__.get("ends", ArenaTask.ends)
 
     def sample(self, rng: np.random.Generator, count: int) -> FloatArray:
-        """Sample ``count`` starts (count, S), columns :attr:`start_columns`; ``rng`` decides."""
+        """Sample ``count`` starts (count, S), columns :attr:`start_columns`; ``rng`` decides.
+
+        :func:`~robobt.learning.envs.starts.start_parts` has their numbers by name.
+        """
         raise NotImplementedError(f"{type(self).__name__}: has no starts")
 
     def observe(self, robots: FloatArray, balls: FloatArray) -> FloatArray:
@@ -155,7 +158,7 @@ class ArenaTask:
         """Fill the ``commands`` (n, R, 7) of the robots that do not learn, for one tick.
 
         ``commands.view(COMMAND)[..., 0]`` has their numbers by name
-        (:class:`robobt.sim.records.Command`); the state of robots and balls is in ``self.arenas``.
+        (:class:`robobt.sim.records.Command`), :attr:`now` those of robots and balls.
         """
 
     def begin(self, starts: FloatArray, which: IntArray) -> None:
@@ -260,6 +263,11 @@ class ArenaTask:
     def _ledger(self, rewards: FloatArray, ends: Ends) -> Ledger:
         """Return what a compiled judge takes as a plain tuple."""
         return cast(Ledger, (self._progress_rows, self._term_rows, rewards, *ends))
+
+    @property
+    def now(self) -> Seen:
+        """Robots and balls in field coordinates; ``now.me`` is the first robot."""
+        return seen(self.arenas.robots, self.arenas.balls, self.blue, self.settings.field)
 
     @property
     def ticks(self) -> FloatArray:
@@ -389,7 +397,7 @@ class ArenaTask:
         self._term_rows[:] = 0.0
         self._judge(actions, np.zeros(self.n), judged_ends)
         tick = Tick(
-            now=seen(arenas.robots, arenas.balls, blue, field),
+            now=self.now,
             before=seen(robots, balls, blue, field),
             contact=arenas.contact,
             kicked=arenas.kicked,

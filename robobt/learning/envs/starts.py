@@ -33,8 +33,11 @@ def split(rows: FloatArray, robots: int) -> tuple[FloatArray, FloatArray, FloatA
     return rows[:, :ball].reshape(len(rows), robots, ROBOT_SIZE), rows[:, ball:rest], rows[:, rest:]
 
 
-def parts_of(rows: FloatArray, robots: int) -> tuple[RecordArray, RecordArray, FloatArray]:
-    """Return :func:`split` with robots (m, robots) and balls (m,) as records."""
+def start_parts(rows: FloatArray, robots: int) -> tuple[RecordArray, RecordArray, FloatArray]:
+    """Return robots (m, robots) and balls (m,) of starts by the names of their numbers, and the rest.
+
+    They share their memory with the ``rows`` (m, S): what is assigned to them is in the starts.
+    """
     bodies, balls, rest = split(rows, robots)
     return bodies.view(ROBOT)[..., 0], balls.view(BALL)[:, 0], rest
 
@@ -54,7 +57,7 @@ def check_starts(rows: FloatArray, columns: Sequence[str], robots: int, field: F
         raise ValueError(f"starts must have the shape (m, {len(columns)}), not {rows.shape}")
     if not np.isfinite(rows).all():
         raise ValueError("a start is not finite")
-    bodies, balls, _ = parts_of(rows, robots)
+    bodies, balls, _ = start_parts(rows, robots)
     x, y = field.outer
     for places in (places_of(bodies), places_of(balls)):
         if (np.abs(places) > (x, y)).any():

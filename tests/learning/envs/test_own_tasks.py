@@ -30,7 +30,7 @@ from tests.registries import temporarily
 OWN = """
 import numpy as np
 from robobt.learning import TASKS
-from robobt.learning.envs import ArenaTask, TaskSettings
+from robobt.learning.envs import ArenaTask, TaskSettings, start_parts
 from robobt.world.observation import entries, observation
 
 
@@ -50,8 +50,9 @@ class Middle(ArenaTask):
 
     def sample(self, rng, count):
         rows = np.zeros((count, len(self.start_columns)))
-        rows[:, :2] = rng.uniform(-1.0, 1.0, (count, 2))
-        rows[:, 6] = 3.0
+        robots, balls, _ = start_parts(rows, self.robots)
+        robots["x"], robots["y"] = rng.uniform(-1.0, 1.0, (2, count, 1))
+        balls["x"] = 3.0
         return rows
 
     def ends(self, tick):
@@ -185,8 +186,8 @@ def test_settings_of_a_shipped_task_may_have_more_numbers(kind: Any) -> None:
         ("return np.hypot", "raise SystemExit(4); np.hypot", r"own\.py:\d+: Middle\.ends: SystemExit: 4"),
         ('-seen.me["x"], -', 'seen.me["x"] * np.nan, -', r"Middle\.observe: the entry 'x' is not finite"),
         ("def ends", "def oppose(self, c): c[:] = np.nan\n\n    def ends", r"Middle\.oppose: a command"),
-        ("rows[:, 6] = 3.0", "rows[:, 99] = 3.0", r"own\.py:\d+: Middle\.sample: IndexError"),
-        ("rows[:, 6] = 3.0", "rows[:, 6] = np.nan", r"Middle\.sample: a start is not finite"),
+        ('balls["x"] = 3.0', "rows[:, 99] = 3.0", r"own\.py:\d+: Middle\.sample: IndexError"),
+        ('balls["x"] = 3.0', 'balls["x"] = np.nan', r"Middle\.sample: a start is not finite"),
         ("return rows", "return rows[:1]", r"Middle\.sample: returns starts of the shape \(1, 10\), not"),
         ("return rows", "pass", r"Middle\.sample: returns starts of the shape \(\), not"),
     ],

@@ -9,8 +9,8 @@ from robobt.learning.envs.starts import (
     BALL_COLUMNS,
     GIVE_UP,
     ROBOT_COLUMNS,
-    parts_of,
     places_of,
+    start_parts,
     velocities,
 )
 from robobt.learning.envs.task import FloatArray
@@ -31,7 +31,7 @@ def go_to_ball_starts(settings: GoToBallSettings, rng: np.random.Generator, coun
     x = (-field.half_length + starts.inset, field.half_length - starts.inset)
     y = (-field.half_width + starts.inset, field.half_width - starts.inset)
     rows = np.zeros((count, len(columns_of(settings))))
-    robots, ball, traits = parts_of(rows, 1 + settings.others.count)
+    robots, ball, traits = start_parts(rows, 1 + settings.others.count)
     robot = robots[:, 0]
     open_ = np.arange(count)
     for _ in range(GIVE_UP):

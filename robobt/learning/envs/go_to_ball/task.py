@@ -21,7 +21,7 @@ from robobt.learning.envs.go_to_ball.starts import columns_of, go_to_ball_starts
 from robobt.learning.envs.judging import Ledger, Report, begin_tick, end_tick, is_over, parameters, report_of
 from robobt.learning.envs.progress import PROGRESS, Progress
 from robobt.learning.envs.scripted import BEHIND, drive_and_face, drive_to_shoot, freest_way
-from robobt.learning.envs.starts import parts_of, split
+from robobt.learning.envs.starts import split, start_parts
 from robobt.learning.envs.task import Ends, FloatArray, IntArray
 from robobt.learning.opponents.patrols import TRAITS, Patrols
 from robobt.skills.ball.go_to_ball import GoToBall
@@ -165,7 +165,7 @@ class GoToBallTask(ArenaTask):
         reach = rule.distance
         if rule.rule in ("infrared", "held"):
             reach = body.face + BALL_RADIUS + body.sensor_depth
-        robots, ball, _ = parts_of(starts, self.robots)
+        robots, ball, _ = start_parts(starts, self.robots)
         robot = robots[:, 0]
         way = np.hypot(ball["x"] - robot["x"], ball["y"] - robot["y"]) - reach
         way = np.maximum(way, 0.0)

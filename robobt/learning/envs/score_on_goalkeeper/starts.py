@@ -7,7 +7,7 @@ from math import pi
 import numpy as np
 
 from robobt.learning.envs.score_on_goalkeeper.settings import KeeperSettings, ScoreOnGoalkeeperSettings
-from robobt.learning.envs.starts import BALL_COLUMNS, ROBOT_COLUMNS, parts_of, velocities
+from robobt.learning.envs.starts import BALL_COLUMNS, ROBOT_COLUMNS, start_parts, velocities
 from robobt.learning.envs.task import FloatArray
 from robobt.learning.opponents.keepers import KEEPER, KINDS, TRAITS, Kind, real_population
 from robobt.world.geometry import wrap_angles
@@ -35,7 +35,7 @@ def score_starts(settings: ScoreOnGoalkeeperSettings, rng: np.random.Generator, 
     far, turned = rng.random(count), rng.uniform(-pi, pi, count)
     if starts.easy:
         far, turned = far**2, turned * rng.random(count)
-    robots, ball, traits = parts_of(rows, 2)
+    robots, ball, traits = start_parts(rows, 2)
     robot, keeper = robots.T
     farthest, nearest = x
     robot["x"] = nearest - (nearest - farthest) * far

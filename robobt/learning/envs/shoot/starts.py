@@ -8,7 +8,7 @@ import numpy as np
 
 from robobt.learning.envs.settings import Span
 from robobt.learning.envs.shoot.settings import ShootSettings
-from robobt.learning.envs.starts import GIVE_UP, START_COLUMNS, parts_of, velocities
+from robobt.learning.envs.starts import GIVE_UP, START_COLUMNS, start_parts, velocities
 from robobt.learning.envs.task import FloatArray
 from robobt.sim.arenas import Arenas
 from robobt.sim.records import COMMAND, RecordArray, size
@@ -29,7 +29,7 @@ def shoot_starts(settings: ShootSettings, rng: np.random.Generator, count: int) 
     x = starts.robot_x or (0.3, field.half_length - field.defense_depth - 0.3)
     y = starts.robot_y or (-field.half_width + 0.1, field.half_width - 0.1)
     rows = np.zeros((count, len(START_COLUMNS)))
-    robots, ball, _ = parts_of(rows, 1)
+    robots, ball, _ = start_parts(rows, 1)
     robot = robots[:, 0]
     robot["x"] = rng.uniform(*x, count)
     robot["y"] = rng.uniform(*y, count)

@@ -9,7 +9,7 @@ import numpy as np
 from robobt.learning.envs.score_on_goalkeeper.starts import keeper_traits
 from robobt.learning.envs.settings import Span
 from robobt.learning.envs.soccer.settings import GOALKEEPER, SoccerSettings
-from robobt.learning.envs.starts import BALL_COLUMNS, GIVE_UP, ROBOT_COLUMNS, parts_of, velocities
+from robobt.learning.envs.starts import BALL_COLUMNS, GIVE_UP, ROBOT_COLUMNS, start_parts, velocities
 from robobt.learning.envs.task import FloatArray
 from robobt.learning.opponents.keepers import KEEPER, TRAITS
 from robobt.sim.records import RecordArray
@@ -43,7 +43,7 @@ def soccer_starts(settings: SoccerSettings, rng: np.random.Generator, count: int
     starts, field, roles, keeping = settings.starts, settings.field, settings.roles, settings.keeping
     blue, total = len(settings.blue), len(roles)
     rows = np.zeros((count, len(columns_of(settings))))
-    robots, ball, traits = parts_of(rows, total)
+    robots, ball, traits = start_parts(rows, total)
     keepers = traits.view(KEEPER)
     keeper = 0
     for index in range(total):
