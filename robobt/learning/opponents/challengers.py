@@ -15,7 +15,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from robobt.learning.opponents.sides import Arenas, see_ball, see_robot
+from robobt.learning.opponents.sides import Arenas, see_ball, see_robots
 from robobt.motion.arrival import meetings
 from robobt.motion.ball_watch import Watch, follow
 from robobt.motion.catch import MOUTH
@@ -56,6 +56,7 @@ from robobt.world.records import (
     BALL,
     MEETING,
     MOVER_SIZE,
+    ROBOT,
     ROBOT_SIZE,
     Limits,
     Mover,
@@ -65,7 +66,6 @@ from robobt.world.records import (
     mover_records,
     robot_records,
 )
-from robobt.world.rules import before_mouth
 from robobt.world.state import BallState, Frame, RobotState
 
 CHALLENGE = "challenge"
@@ -250,25 +250,18 @@ def _decide(
         minds: the team's plans, what was seen of the balls, and the robots' memories; changed.
         commands: to be filled.
     """
-    (who, rows, mates, sign), (robots, balls, contact), (plans, watches, memory) = players, arenas, minds
+    (who, rows, mates, sign), (robots_, balls_, contact), (plans, watches, memory) = players, arenas, minds
+    robots, balls = robots_.view(ROBOT)[..., 0], balls_.view(BALL)[:, 0]
     team: _Team = team_.view(_TEAM)[0]
     own, trip, ball = team.own, team.trip, team.scene.ball
     count, candidates = len(rows), np.empty((mates, _CANDIDATE_SIZE))
-    seen, movers = np.empty((count, ROBOT_SIZE)), np.empty((count, MOVER_SIZE))
+    seen_, movers = np.empty((count, ROBOT_SIZE)), np.empty((count, MOVER_SIZE))
+    seen, every = robot_records(seen_), mover_records(movers)
     has: NDArray[np.bool_] = np.empty(count, dtype=np.bool_)
-    every = mover_records(movers)
     for i in range(len(balls)):
-        see_ball(balls[i].view(BALL)[0], sign, ball)
-        disputed, all_ = False, robot_records(robots[i])
-        for row in range(count):
-            robot, mover = robot_records(seen)[row], every[row]
-            see_robot(all_[rows[row]], sign, robot)
-            mover.x, mover.y, mover.vx, mover.vy = robot.x, robot.y, robot.vx, robot.vy
-            mover.max_speed, mover.acceleration, mover.braking = own.max_speed, own.acceleration, own.braking
-            mover.number = row
-            dx, dy = ball.x - robot.x, ball.y - robot.y
-            has[row] = contact[i, rows[row]] or before_mouth(dx, dy, robot.heading)
-            disputed = disputed or (row >= mates and has[row])
+        see_ball(balls[i], sign, ball)
+        see_robots(robots[i], contact[i], rows, sign, own, ball, seen, every, has)
+        disputed = bool(has[mates:].any())
         time, speed = times[i], hypot(ball.vx, ball.vy)
         rolling = follow(watches.view(_WATCH)[i, 0], time, speed, _SLIDE, _ROLL, _SHARE)
         first = -1
@@ -291,7 +284,7 @@ def _decide(
         for row in range(mates):
             if not who[rows[row]]:
                 continue
-            team_[:ROBOT_SIZE], trip.number = seen[row], row
+            team_[:ROBOT_SIZE], trip.number = seen_[row], row
             commands[i, rows[row]] = 0.0
             command: Command = commands[i].view(COMMAND)[rows[row], 0]
             if row == first:

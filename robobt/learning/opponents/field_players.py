@@ -19,7 +19,7 @@ from robobt.world.compiled import compilable, compiled, numbers_dtype, numbers_o
 from robobt.world.field import FieldGeometry
 from robobt.world.geometry import FloatArray, Point, wrap_angle
 from robobt.world.limits import RobotLimits
-from robobt.world.records import BALL, Ball, Robot, robot_records
+from robobt.world.records import BALL, ROBOT, Ball, Robot
 
 
 class Role(IntEnum):
@@ -117,9 +117,14 @@ def _decide(
 ) -> None:
     field: FieldGeometry = field_.view(_FIELD)[0]
     drive: Drive = drive_.view(DRIVE)[0]
-    (roles, fetch, blue), (robots, balls, contact) = roles_, arenas
+    (roles, fetch, blue), (robots_, balls_, contact) = roles_, arenas
+    robots, balls, orders = (
+        robots_.view(ROBOT)[..., 0],
+        balls_.view(BALL)[:, 0],
+        commands.view(COMMAND)[..., 0],
+    )
     for i in range(len(balls)):
-        all_, ball = robot_records(robots[i]), balls[i].view(BALL)[0]
+        all_, ball = robots[i], balls[i]
         for r in range(len(roles)):
             if roles[r] < 0:
                 continue
@@ -157,7 +162,7 @@ def _decide(
                     x = sign * (field.length / 2 - field.defense_depth - 0.6)
                     target = (x, -1.2 if ball.y > 0.0 else 1.2)
             commands[i, r] = 0.0
-            command: Command = commands[i].view(COMMAND)[r, 0]
+            command: Command = orders[i, r]
             command.vx, command.vy, command.omega = drive_straight(me, target, facing, top, turn, drive)
             command.kick_speed, command.dribbler = kick, 1.0
 

@@ -14,7 +14,7 @@ from typing import NamedTuple, Protocol
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from robobt.learning.opponents.sides import Arenas, see_ball, see_robot
+from robobt.learning.opponents.sides import Arenas, see_ball, see_robots
 from robobt.motion.ball_watch import Watch, follow
 from robobt.motion.path_planner import travel_law
 from robobt.motion.pilot import ROBOBULLS_LIMITS, drive_law
@@ -39,6 +39,7 @@ from robobt.world.records import (
     BALL,
     LIMITS,
     MOVER_SIZE,
+    ROBOT,
     ROBOT_SIZE,
     Limits,
     Robot,
@@ -48,7 +49,7 @@ from robobt.world.records import (
     mover_records,
     robot_records,
 )
-from robobt.world.rules import ALONG, MOUTH_SECTOR, before_mouth
+from robobt.world.rules import ALONG
 from robobt.world.state import ROBOT_RADIUS, BallState, Frame, RobotState
 
 
@@ -261,22 +262,30 @@ def _decide(
     commands: FloatArray,
     cases: NDArray[np.int64],
 ) -> None:
-    robots, balls, contact = arenas
+    robots_, balls_, contact = arenas
+    robots, balls = robots_.view(ROBOT)[..., 0], balls_.view(BALL)[:, 0]
+    memories, limits, orders = (
+        memory_.view(_MEMORY)[:, 0],
+        given_.view(LIMITS)[:, 0],
+        commands.view(COMMAND)[:, 0],
+    )
     count = robots.shape[1]
-    seen, movers = np.empty((count, ROBOT_SIZE)), np.zeros((count, MOVER_SIZE))
-    sensed: NDArray[np.bool_] = np.empty(count, dtype=np.bool_)
-    every, all_ = mover_records(movers), robot_records(seen)
+    rows, has = np.empty(count, dtype=np.int64), np.empty(count, dtype=np.bool_)
+    for k in range(count):
+        rows[0 if k == me else (k + 1 if k < me else k)] = k
+    seen_, movers = np.empty((count, ROBOT_SIZE)), np.empty((count, MOVER_SIZE))
+    seen, every = robot_records(seen_), mover_records(movers)
     setting: _Setting = setting_.view(_SETTING)[0]
     scene, trip, own = setting.scene, setting.trip, setting.own
     for i in range(len(balls)):
-        _see(robots[i], contact[i], me, seen, movers, sensed)
-        ball, memory, given = scene.ball, memory_.view(_MEMORY)[i, 0], given_.view(LIMITS)[i, 0]
-        see_ball(balls[i].view(BALL)[0], -1.0, ball)
-        setting_[:ROBOT_SIZE] = seen[0]
-        case, y = _case(style, setting, all_, sensed, memory)
+        ball, memory, given = scene.ball, memories[i], limits[i]
+        see_ball(balls[i], -1.0, ball)
+        see_robots(robots[i], contact[i], rows, -1.0, own, ball, seen, every, has)
+        setting_[:ROBOT_SIZE] = seen_[0]
+        case, y = _case(style, setting, seen, has, memory)
         slowed, order = memory.slowed > 0.0, (0.0, 0.0, 0.0)
         commands[i] = 0.0
-        command: Command = commands[i].view(COMMAND)[0]
+        command: Command = orders[i]
         if case == Case.COVER and not _set_out(style, setting):
             case = Case.HOME
         if case in (Case.AIM, Case.SHOT):
@@ -301,30 +310,8 @@ def _decide(
 
 
 @compiled
-def _see(
-    robots: FloatArray,
-    contact: NDArray[np.bool_],
-    me: int,
-    seen: FloatArray,
-    movers: FloatArray,
-    sensed: NDArray[np.bool_],
-) -> None:
-    """Fill in an arena as the goalkeeper's team sees it: the own goal at -x, the own robot first.
-
-    ``movers`` take what a way in open play depends on.
-    """
-    all_, every = robot_records(robots), mover_records(movers)
-    for k in range(len(robots)):
-        row = 0 if k == me else (k + 1 if k < me else k)
-        robot, mover = robot_records(seen)[row], every[row]
-        see_robot(all_[k], -1.0, robot)
-        sensed[row] = contact[k]
-        mover.x, mover.y, mover.vx, mover.vy = robot.x, robot.y, robot.vx, robot.vy
-
-
-@compiled
 def _case(
-    style: _Style, setting: _Setting, robots: Sequence[Robot], sensed: NDArray[np.bool_], memory: _Memory
+    style: _Style, setting: _Setting, robots: Sequence[Robot], has: NDArray[np.bool_], memory: _Memory
 ) -> tuple[int, float]:
     """Return the case, and where the ball would cross the goal line if it is one of a shot [m]."""
     field, ball = setting.field, setting.scene.ball
@@ -332,14 +319,13 @@ def _case(
     for k in range(len(robots)):
         robot = robots[k]
         dx, dy = ball.x - robot.x, ball.y - robot.y
-        held = sensed[k] or before_mouth(dx, dy, robot.heading, MOUTH_SECTOR)
-        along = held and hypot(ball.vx - robot.vx, ball.vy - robot.vy) < ALONG
+        along = has[k] and hypot(ball.vx - robot.vx, ball.vy - robot.vy) < ALONG
         carried = carried or along
         if k == 0:
             carries, own_way = along, hypot(dx, dy)
             continue
         nearest = min(nearest, hypot(dx, dy))
-        if held:
+        if has[k]:
             aim = aimed_at(robot, ball, field)
             if not isnan(aim):
                 return Case.AIM, aim

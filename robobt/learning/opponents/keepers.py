@@ -20,11 +20,11 @@ from robobt.learning.opponents.goalkeepers import Case, FittedGoalkeepers, Goalk
 from robobt.learning.opponents.sides import Arenas, see_ball, see_robot
 from robobt.learning.opponents.straight import DRIVE, TURN, Drive, drive_of, drive_straight
 from robobt.sim.records import COMMAND, Command, size
-from robobt.world.compiled import compilable, compiled, numbers_dtype, numbers_of, record_dtype
+from robobt.world.compiled import compilable, compiled_lean, numbers_dtype, numbers_of, record_dtype
 from robobt.world.field import FieldGeometry
 from robobt.world.geometry import FloatArray, Point
 from robobt.world.limits import RobotLimits
-from robobt.world.records import BALL, ROBOT_SIZE, Ball, Robot, robot_records
+from robobt.world.records import BALL, ROBOT, ROBOT_SIZE, Ball, Robot
 from robobt.world.rules import in_area
 from robobt.world.state import ROBOT_RADIUS
 
@@ -111,6 +111,8 @@ class Keepers:
         self._fitted: FittedGoalkeepers | None = None
         self._new_fitted = partial(_real, field, limits, period, n)
         self._theirs = np.zeros((n, size(COMMAND)))
+        # The plays there are in any arena, and in which.
+        self._played: list[tuple[Goalkeepers, NDArray[np.bool_]]] = []
         # Opponent and goalkeeper, the ball, and who has it, turned round to where its goal is at +x.
         self._pairs, self._balls = np.zeros((n, 2, ROBOT_SIZE)), np.zeros((n, size(BALL)))
         self._holds: NDArray[np.bool_] = np.zeros((n, 2), dtype=np.bool_)
@@ -125,6 +127,11 @@ class Keepers:
         if fitted.any():
             self._fitted = self._fitted or self._new_fitted()
             self._fitted.restart(which[fitted], speed[fitted])
+        kinds = self._traits.view(KEEPER)["keeper_kind"][:, 0]
+        plays = ((Kind.SHIPPED, self._shipped), (Kind.FITTED, self._fitted))
+        self._played = [
+            (play, these) for each, play in plays if play is not None and (these := kinds == each).any()
+        ]
 
     def decide(
         self, robots: FloatArray, balls: FloatArray, contact: NDArray[np.bool_], commands: FloatArray
@@ -133,13 +140,10 @@ class Keepers:
         arenas, seen = (robots, balls, contact), (self._pairs, self._balls, self._holds)
         who = (self.index, self._blue)
         _decide(self._field, self._drive, self._traits, who, arenas, seen, commands, self.kept)
-        kinds = self._traits.view(KEEPER)["keeper_kind"][:, 0]
-        for kind, play in ((Kind.SHIPPED, self._shipped), (Kind.FITTED, self._fitted)):
-            these = kinds == kind
-            if play is not None and these.any():
-                play.decide(*seen, 1, self._theirs)
-                commands[these, self.index] = self._theirs[these]
-                self.kept[these] |= np.isin(play.cases[these], (Case.FETCH, Case.CLEAR))
+        for play, these in self._played:
+            play.decide(*seen, 1, self._theirs)
+            commands[these, self.index] = self._theirs[these]
+            self.kept[these] |= np.isin(play.cases[these], (Case.FETCH, Case.CLEAR))
 
 
 def _real(field: FieldGeometry, limits: RobotLimits, period: float, n: int) -> FittedGoalkeepers:
@@ -158,7 +162,7 @@ def real_population() -> Population:
     return read_population(REAL)
 
 
-@compiled
+@compiled_lean
 def _decide(
     field_: FloatArray,
     drive_: FloatArray,
@@ -171,25 +175,27 @@ def _decide(
 ) -> None:
     field: FieldGeometry = field_.view(_FIELD)[0]
     drive: Drive = drive_.view(DRIVE)[0]
-    (index, blue), (robots, balls, contact), (pairs, turned, holds) = who, arenas, seen
+    (index, blue), (robots_, balls_, contact), (pairs_, turned_, holds) = who, arenas, seen
+    robots, balls = robots_.view(ROBOT)[..., 0], balls_.view(BALL)[:, 0]
+    pairs, turned = pairs_.view(ROBOT)[..., 0], turned_.view(BALL)[:, 0]
+    keepers, orders = traits.view(KEEPER)[:, 0], commands.view(COMMAND)[..., 0]
     # To where its goal is at +x.
     sign = -1.0 if index < blue else 1.0
     for i in range(len(balls)):
-        all_, pair, ball = robot_records(robots[i]), robot_records(pairs[i]), turned[i].view(BALL)[0]
-        nearest = _nearest(all_, balls[i].view(BALL)[0], index, blue)
-        see_ball(balls[i].view(BALL)[0], sign, ball)
+        nearest = _nearest(robots[i], balls[i], index, blue)
+        see_ball(balls[i], sign, turned[i])
         for row in range(2):
             one = index if row else nearest
-            see_robot(all_[one], sign, pair[row])
+            see_robot(robots[i, one], sign, pairs[i, row])
             holds[i, row] = contact[i, one]
-        me, keeper = pair[1], traits[i].view(KEEPER)[0]
+        attacker, me, ball, keeper = pairs[i, 0], pairs[i, 1], turned[i], keepers[i]
         near = in_area(
             ball.x, ball.y, field.length / 2, field.defense_depth, field.defense_width, ROBOT_RADIUS
         )
         kept[i] = near and not holds[i, 0] and hypot(ball.vx, ball.vy) < _REST
-        place = _place(keeper, pair[0], me, ball, field.length / 2, field.goal_width / 2)
+        place = _place(keeper, attacker, me, ball, field.length / 2, field.goal_width / 2)
         commands[i, index] = 0.0
-        command: Command = commands[i].view(COMMAND)[index, 0]
+        command: Command = orders[i, index]
         command.vx, command.vy, command.omega = drive_straight(
             me, place, (ball.x, ball.y), keeper.keeper_speed, TURN, drive
         )
@@ -207,7 +213,7 @@ def _nearest(robots: Sequence[Robot], ball: Ball, index: int, blue: int) -> int:
     return nearest
 
 
-@compiled
+@compiled_lean
 def _place(keeper: Keeper, attacker: Robot, me: Robot, ball: Ball, goal_x: float, half_goal: float) -> Point:
     """Return where a goalkeeper drives now."""
     kind, out = int(keeper.keeper_kind), keeper.keeper_out
@@ -234,7 +240,7 @@ def _place(keeper: Keeper, attacker: Robot, me: Robot, ball: Ball, goal_x: float
     return goal_x + min(out * dx / far, -ROBOT_RADIUS), out * dy / far
 
 
-@compiled
+@compiled_lean
 def _pointed_by(attacker: Robot, ball: Ball) -> bool:
     """Return whether the attacker still drives the ball: nothing has been shot yet."""
     near = hypot(ball.x - attacker.x, ball.y - attacker.y) < 2.0 * ROBOT_RADIUS

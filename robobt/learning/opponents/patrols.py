@@ -9,11 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from robobt.learning.opponents.straight import DRIVE, TURN, Drive, drive_of, drive_straight
-from robobt.sim.records import COMMAND, Command
-from robobt.world.compiled import compilable, compiled, record_dtype
+from robobt.sim.records import COMMAND
+from robobt.world.compiled import compilable, compiled_lean, record_dtype
 from robobt.world.geometry import FloatArray, Point
 from robobt.world.limits import RobotLimits
-from robobt.world.records import Robot, robot_records
+from robobt.world.records import ROBOT
 
 _THERE = 0.1
 """How near an end it turns round [m]."""
@@ -67,19 +67,20 @@ class Patrols:
         _decide(self._drive, self._traits, self._memory, robots, commands)
 
 
-@compiled
+@compiled_lean
 def _decide(
     drive_: FloatArray, traits: FloatArray, memory: FloatArray, robots: FloatArray, commands: FloatArray
 ) -> None:
     drive: Drive = drive_.view(DRIVE)[0]
-    count = traits.shape[1]
-    first = robots.shape[1] - count
-    for i in range(len(traits)):
+    patrols, minds = traits.view(PATROL)[..., 0], memory.view(_MEMORY)[..., 0]
+    all_, orders = robots.view(ROBOT)[..., 0], commands.view(COMMAND)[..., 0]
+    arenas, count = patrols.shape
+    first = all_.shape[1] - count
+    for i in range(arenas):
         for k in range(count):
-            me: Robot = robot_records(robots[i])[first + k]
-            command: Command = commands[i].view(COMMAND)[first + k, 0]
-            patrol: Patrol = traits[i].view(PATROL)[k, 0]
-            mind: _Memory = memory[i].view(_MEMORY)[k, 0]
+            patrol: Patrol = patrols[i, k]
+            mind: _Memory = minds[i, k]
+            me, command = all_[i, first + k], orders[i, first + k]
             mind.stuck = mind.stuck + 1.0 if hypot(me.vx, me.vy) < _STUCK else 0.0
             x, y = _end(patrol, mind)
             if hypot(x - me.x, y - me.y) < _THERE or mind.stuck > _PATIENCE:

@@ -25,7 +25,7 @@ from robobt.world.compiled import compilable, compiled, numbers_dtype, numbers_o
 from robobt.world.field import FieldGeometry
 from robobt.world.geometry import FloatArray, wrap_angle
 from robobt.world.limits import RobotLimits
-from robobt.world.records import BALL, Ball, Robot, robot_records
+from robobt.world.records import BALL, ROBOT, Ball, Robot
 from robobt.world.rules import STOP_DISTANCE
 from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS
 
@@ -119,20 +119,22 @@ def _decide(
     commands: FloatArray,
 ) -> None:
     field: FieldGeometry = field_.view(_FIELD)[0]
-    (scripted, able, passes), (restarts, robots, balls) = roles, arenas
+    (scripted, able, passes), (restarts_, robots_, balls_) = roles, arenas
+    restarts, robots = restarts_.view(RESTART)[:, 0], robots_.view(ROBOT)[..., 0]
+    balls, orders = balls_.view(BALL)[:, 0], commands.view(COMMAND)[..., 0]
     for i in range(len(balls)):
-        restart: RestartState = restarts.view(RESTART)[i, 0]
+        restart: RestartState = restarts[i]
         team, barred = restart.team, int(restart.taker)
         if team == 0.0 and barred < 0:
             continue
-        all_, ball = robot_records(robots[i]), balls[i].view(BALL)[0]
+        all_, ball = robots[i], balls[i]
         first, last, sign = side_of(0 if team > 0.0 else blue, blue, len(scripted))
         side = Side(all_, ball, first, last, sign)
         taker = nearest_to(side, 0.0, able) if team != 0.0 else -1
         for r in range(len(scripted)):
             if not scripted[r] or (team == 0.0 and r != barred):
                 continue
-            command: Command = commands[i].view(COMMAND)[r, 0]
+            command: Command = orders[i, r]
             if r == taker:
                 commands[i, r] = 0.0
                 _take(field, side, r, passes[r], drive, command)
