@@ -9,6 +9,7 @@ the team's plan meets it, but not caught as softly as ``ReceivePass`` does.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import astuple
 from math import atan2, hypot, inf, isnan, nan
 from typing import Protocol
 
@@ -127,19 +128,7 @@ class _Memory(Protocol):
 
 
 _MEMORY = record_dtype(_Memory)
-_FRESH = np.array(
-    [
-        Hold().since,
-        Hold().seen,
-        Settling().had,
-        Settling().settled,
-        Course().way,
-        Course().since,
-        nan,
-        nan,
-        0.0,
-    ]
-)
+_FRESH = np.array([*astuple(Hold()), *astuple(Settling()), *astuple(Course()), nan, nan, 0.0])
 """A memory of nothing."""
 
 _TEAM, _PLAN, _WATCH = record_dtype(_Team), record_dtype(_Plan), record_dtype(Watch)
