@@ -6,6 +6,7 @@ import hashlib
 import os
 import pickle
 import shutil
+import sys
 import tempfile
 import time
 import traceback
@@ -235,9 +236,17 @@ def _read(address: str) -> tuple[str | None, float, bool]:
 
 
 def _staged(folder: Path) -> Path:
-    """Copy what nodes need, laid out as in a checkout, and return where."""
-    package = Path(robobt.__file__).parent
-    shutil.copytree(package, folder / "robobt", ignore=shutil.ignore_patterns("__pycache__", "_data"))
+    """Copy what nodes need, laid out as in a checkout, and return where.
+
+    A package that is run where it lies, as by ``python -m paper``, is copied too: tasks may be its own.
+    """
+    packages = {Path(robobt.__file__).resolve().parent}
+    program = Path(getattr(sys.modules["__main__"], "__file__", None) or "").resolve()
+    if program.name == "__main__.py" and program.parent.parent == Path.cwd():
+        packages.add(program.parent)
+    for package in packages:
+        left_out = shutil.ignore_patterns("__pycache__", "_data")
+        shutil.copytree(package, folder / package.name, ignore=left_out)
     shutil.copytree(models_folder(), folder / "models")
     shutil.copytree(scenarios_folder(), folder / "examples" / "scenarios")
     return folder

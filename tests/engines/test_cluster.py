@@ -131,6 +131,26 @@ def test_without_ray_it_is_told_how_to_get_it(monkeypatch: pytest.MonkeyPatch) -
         RayEngine("ray")
 
 
+def test_a_package_that_is_run_where_it_lies_is_sent_beside_robobt(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    sent: set[str] = set()
+
+    def init(**options: Any) -> None:
+        sent.update(os.listdir(options["runtime_env"]["working_dir"]))
+
+    cluster = SimpleNamespace(
+        is_initialized=lambda: False, init=init, cluster_resources=dict, shutdown=lambda: None
+    )
+    (tmp_path / "tables").mkdir()
+    (tmp_path / "tables" / "__main__.py").touch()
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setitem(_MODULES, "ray", cluster)
+    monkeypatch.setitem(_MODULES, "__main__", SimpleNamespace(__file__=str(tmp_path / "tables/__main__.py")))
+    RayEngine("ray://127.0.0.1:10001").close()
+    assert sent == {"robobt", "tables", "models", "examples"}
+
+
 def test_a_head_that_does_not_answer_is_told_what_it_needs(monkeypatch: pytest.MonkeyPatch) -> None:
     def unreachable(**_: object) -> None:
         raise ConnectionError("ray client connection timeout")
