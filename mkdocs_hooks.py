@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from mkdocs.structure.files import Files
 
 TUTORIALS = Path(__file__).parent / "docs" / "tutorials"
+PAPER = "python -m paper"
 
 
 def on_files(files: Files, config: MkDocsConfig) -> Files:
@@ -61,10 +62,15 @@ def commands() -> str:
     """Write what every command says of itself."""
     import typer.main
 
+    from paper.__main__ import application
     from robobt.cli import app
 
-    root = typer.main.get_command(app)
-    return "# Commands\n\n" + "\n".join(_command(root, "robobt", 2))
+    parts = ["# Commands\n", *_command(typer.main.get_command(app), "robobt", 2)]
+    paper = typer.main.get_command(application())
+    parts += [f"## {PAPER}\n\n{paper.help} It runs in a clone of the repository.\n"]
+    for name, command in paper.commands.items():
+        parts += _command(command, f"{PAPER} {name}", 3)
+    return "\n".join(parts)
 
 
 def _command(command: Any, path: str, level: int) -> Iterable[str]:
@@ -78,6 +84,8 @@ def _command(command: Any, path: str, level: int) -> Iterable[str]:
             yield f"| `{names}` | {_cell(getattr(option, 'help', '') or '')} |"
         yield ""
     for name, inner in getattr(command, "commands", {}).items():
+        if inner.hidden:
+            continue
         yield from _command(inner, f"{path} {name}", level + (path != "robobt"))
 
 

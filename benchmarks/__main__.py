@@ -8,8 +8,7 @@ from importlib import import_module
 
 import typer
 
-from robobt.cli.common import one_line_errors
-from robobt.config.telling import tell_warnings
+from robobt.cli import add_commands, global_options, run
 
 COMMANDS = {
     "sim": "sim:sim",
@@ -46,40 +45,31 @@ SCRIPTS = {
 
 
 def application(only: str | None = None) -> typer.Typer:
-    """Return the application; with one command alone where that is all that is asked for."""
+    """Make the application; of one command alone where that is all that is asked for."""
     known = only in COMMANDS or only in SCRIPTS
     made = typer.Typer(
-        no_args_is_help=True, add_completion=False, pretty_exceptions_enable=False, help=__doc__.strip()
+        no_args_is_help=True,
+        add_completion=False,
+        pretty_exceptions_enable=False,
+        help="How fast robobt is, and what its models are worth.",
     )
-    made.callback()(lambda: tell_warnings(False))
-    for name, place in COMMANDS.items():
-        if name == only or not known:
-            module, _, function = place.partition(":")
-            command = getattr(import_module(f"benchmarks.{module}"), function)
-            made.command(name)(one_line_errors(command))
+    made.callback()(global_options)
+    asked = {name: place for name, place in COMMANDS.items() if name == only or not known}
+    add_commands(made, asked, "benchmarks")
+    anything = {"ignore_unknown_options": True, "allow_extra_args": True}
     for name, about in SCRIPTS.items():
         if name == only or not known:
-            made.command(
-                name,
-                help=about,
-                add_help_option=False,
-                context_settings={"ignore_unknown_options": True, "allow_extra_args": True},
-            )(_script(name))
+            made.command(name, help=about, add_help_option=False, context_settings=anything)(_script(name))
     return made
 
 
 def _script(name: str) -> Callable[[typer.Context], None]:
-    def run(context: typer.Context) -> None:
+    def run_script(context: typer.Context) -> None:
         sys.argv = [f"python -m benchmarks {name}", *context.args]
         import_module(f"benchmarks.{name}").main()
 
-    return run
-
-
-def main() -> None:
-    """Run a benchmark."""
-    application(sys.argv[1] if len(sys.argv) > 1 else None)(prog_name="python -m benchmarks")
+    return run_script
 
 
 if __name__ == "__main__":
-    main()
+    run(application, "python -m benchmarks")

@@ -14,10 +14,10 @@ import typer
 from numpy.typing import NDArray
 
 from robobt.cli.common import Json, Progress, print_json, say
-from robobt.experiments.shot_sets import load_shot_sets
 from robobt.shots.data.inputs import goals, shot_inputs
 from robobt.shots.predict.features import paper_features
 from robobt.shots.predict.network_classifier import NetworkClassifier
+from robobt.shots.predict.shot_sets import load_shot_sets
 from robobt.shots.predict.validation import FOLDS, stratified_folds
 from robobt.skills.aim.raters.goal_line import goal_candidates, obstacles
 from robobt.skills.aim.raters.nn_filtered import NNFiltered
@@ -120,7 +120,7 @@ def _median(action: Callable[[], object], repeats: int) -> float:
 
 def shots(
     data: Annotated[
-        Path | None, typer.Option("--data", help="Shots to learn from, as for 'robobt paper'.")
+        Path | None, typer.Option("--data", help="Shots to learn from, as for 'python -m paper table2'.")
     ] = None,
     networks: Annotated[
         int, typer.Option("--networks", min=1, max=1000, help="How many networks, 100 being 10 x 10 folds.")

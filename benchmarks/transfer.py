@@ -19,8 +19,8 @@ import argparse
 from collections.abc import Mapping
 
 from robobt.cli.scenario_options import with_teams
-from robobt.experiments.compare import Difference, compare
 from robobt.match import MatchResult, load_scenario, run_trials
+from robobt.match.results.compare import Difference, compare
 from robobt.match.scenario.changes import changed
 from robobt.match.scenario.scenario import Scenario
 from robobt.models.find import read_fitting_model

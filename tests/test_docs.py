@@ -20,6 +20,7 @@ from robobt.cli import app
 from robobt.config.extras import MissingExtraError
 from robobt.config.yaml import read_yaml
 from robobt.plays import PLAYS
+from tests.programs import PROGRAMS, calls_a_program, program_and_words
 from tests.registries import temporarily
 
 ROOT = Path(__file__).parent.parent
@@ -30,7 +31,7 @@ PAGES = {
 }
 FENCED = re.compile(r"^ *```(\w*)\n(.*?)^ *```", re.DOTALL | re.MULTILINE)
 ANCHOR = re.compile(r"[^\w\- ]")
-ROBOBT = get_command(app)
+COMMANDS = {name: get_command(made) for name, made in PROGRAMS.items()}
 
 
 def blocks(page: str, *kinds: str) -> list[str]:
@@ -38,43 +39,47 @@ def blocks(page: str, *kinds: str) -> list[str]:
 
 
 def typed(page: str) -> list[str]:
-    """The lines of its shell blocks that run robobt."""
+    """The lines of its shell blocks that run one of the programs."""
     lines = "\n".join(blocks(page, "sh", "")).replace("\\\n", " ").splitlines()
-    return [line.strip() for line in lines if re.match(r" *robobt ", line)]
+    return [line.strip() for line in lines if calls_a_program(line)]
 
 
 def named(page: str) -> list[str]:
     """The commands that its sentences name, often without what they need."""
     text = FENCED.sub("", PAGES[page].read_text())
-    return [" ".join(span.split()) for span in re.findall(r"`(robobt [^`]+)`", text)]
+    spans = [" ".join(span.split()) for span in re.findall(r"`([^`]+)`", text)]
+    return [span.removesuffix(" …") for span in spans if calls_a_program(span)]
 
 
-def take(words: list[str]) -> None:
-    """Read the words of a command as robobt does, and leave it at that."""
-    command, context = ROBOBT, None
+def take(line: str) -> None:
+    """Read a line as its program does, and leave it at that."""
+    name, words = program_and_words(line)
+    command, context = COMMANDS[name], None
     while isinstance(command, TyperGroup):
-        context = command.make_context("robobt", words, parent=context)
+        context = command.make_context(name, words, parent=context)
         _, found, words = command.resolve_command(context, [*context._protected_args, *context.args])
         command = found or command
-    command.make_context("robobt", words, parent=context)
+        assert not command.hidden, f"{line}: is not there any more"
+    command.make_context(name, words, parent=context)
 
 
-def options_of(words: list[str]) -> set[str]:
-    """The options of the command that the first words name."""
-    command = ROBOBT
+def options_of(name: str, words: list[str]) -> set[str]:
+    """The options of the command of a program that the first words name."""
+    command = COMMANDS[name]
     for word in words:
         if isinstance(command, TyperGroup) and not word.startswith("-"):
             assert word in command.commands, f"there is no command {word!r}"
             command = command.commands[word]
-    found = [*command.params, *ROBOBT.params]
+            assert not command.hidden, f"{word!r} is not there any more"
+    found = [*command.params, *COMMANDS[name].params]
     return {"--help"}.union(*[[*option.opts, *option.secondary_opts] for option in found])
 
 
 @pytest.mark.parametrize("page", PAGES)
-def test_a_command_to_type_is_one_that_robobt_takes(page: str) -> None:
+def test_a_command_to_type_is_one_that_the_program_takes(page: str) -> None:
     for line in typed(page):
         try:
-            take(shlex.split(line, comments=True)[1:])
+            take(line)
         except TyperException as error:
             pytest.fail(f"{line}: {error}")
 
@@ -82,9 +87,9 @@ def test_a_command_to_type_is_one_that_robobt_takes(page: str) -> None:
 @pytest.mark.parametrize("page", PAGES)
 def test_a_command_that_a_sentence_names_has_these_options(page: str) -> None:
     for span in named(page):
-        words = shlex.split(span.removesuffix(" …"))[1:]
+        name, words = program_and_words(span)
         given = {word.split("=")[0] for word in words if word.startswith("--")}
-        assert given <= options_of(words), span
+        assert given <= options_of(name, words), span
 
 
 @pytest.mark.parametrize("page", PAGES)

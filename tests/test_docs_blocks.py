@@ -7,7 +7,6 @@ they name another machine or a long time, ``REPLACED`` says what is run instead.
 from __future__ import annotations
 
 import re
-import shlex
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
@@ -19,7 +18,6 @@ from typer.testing import CliRunner
 import robobt
 import robobt.skills
 import robobt.skills.tactics
-from robobt.cli import app
 from robobt.config.yaml import parse_marked
 from robobt.learning import TASKS
 from robobt.learning.envs.go_to_ball.settings import GoToBallSettings
@@ -46,6 +44,7 @@ from tests.models.made_models import (
     team_card,
     write_model,
 )
+from tests.programs import PROGRAMS, calls_a_program, program_and_words
 from tests.registries import temporarily
 from tests.shots.made_up import made_up_table
 
@@ -257,7 +256,7 @@ def test_what_runs_elsewhere_names_the_test() -> None:
 
 def lines(page: str) -> list[str]:
     typed = "\n".join([*blocks(page, "sh"), *blocks(page, "")]).splitlines()
-    commands = [line.split("  #")[0].strip() for line in typed if line.startswith("robobt ")]
+    commands = [line.split("  #")[0].strip() for line in typed if calls_a_program(line)]
     return [line for line in commands if not any(word in line for word in NOT_HERE)]
 
 
@@ -310,7 +309,8 @@ def test_the_commands_of_a_page_run(page: str, tmp_path: Path, monkeypatch: pyte
             shorter = line
             for long, short in LESS.items():
                 shorter = re.sub(long, short, shorter)
-            command = [*shlex.split(shorter)[1:], *SHORTER.get(line.split()[1], [])]
-            done = CliRunner().invoke(app, command)
+            program, words = program_and_words(shorter)
+            command = [*words, *SHORTER.get(words[0], [])]
+            done = CliRunner().invoke(PROGRAMS[program], command)
             verdicts = (0, 1) if line.startswith("robobt sweep") else (0,)  # 1: nothing is better
             assert done.exit_code in verdicts, f"{shorter}: {done.output} {done.exception}"

@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 import re
-import shlex
 import subprocess
 from pathlib import Path
 
 import pytest
 from typer.testing import CliRunner
 
-from robobt.cli import app
 from robobt.match import load_scenario
+from tests.programs import PROGRAMS, program_and_words
 
 ROOT = Path(__file__).parent.parent
 README, TOUR = (
@@ -47,9 +46,10 @@ def test_the_robobt_commands_run_one_after_the_other(tmp_path: Path, monkeypatch
     monkeypatch.setattr("robobt.match.load_scenario", lambda source: load_scenario(source).lasting(20.0))
     fewer = [option for name in ("starts", "held_out") for option in ("--set", f"evaluation.{name}=20")]
     for command in commands(TOUR):
-        program, *arguments = shlex.split(command)
-        assert program == "robobt"
-        done = CliRunner().invoke(app, [*arguments, *(fewer if arguments[0] == "train" else [])])
+        program, arguments = program_and_words(command)
+        done = CliRunner().invoke(
+            PROGRAMS[program], [*arguments, *(fewer if arguments[0] == "train" else [])]
+        )
         assert done.exit_code == 0, f"{command}: {done.output}"
     assert (tmp_path / "out/match.html").stat().st_size > 10_000
     assert (tmp_path / "out/six.html").stat().st_size > 100_000

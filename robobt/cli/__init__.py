@@ -7,6 +7,7 @@ is imported by the command that needs it, so that ``robobt --help`` is quick.
 from __future__ import annotations
 
 import gc
+import shlex
 import sys
 from collections.abc import Callable, Mapping
 from importlib import import_module
@@ -59,19 +60,10 @@ _GROUPS = {
             "map": "shots:draw",
         },
     ),
-    "paper": (
-        "The tables of the paper, its figures beside ours.",
-        {
-            "table2": "paper:table2",
-            "table3": "paper:table3",
-            "table4": "table4:table4",
-            "deployed": "deployed:deployed",
-        },
-    ),
 }
 """The groups of commands, each with its help and its commands."""
 
-_MOVED = {"bench": "python -m benchmarks"}
+_MOVED = {"bench": "python -m benchmarks", "paper": "python -m paper"}
 """Commands that are run from a clone of the repository now, and how."""
 
 app: typer.Typer
@@ -101,7 +93,7 @@ def _run_on(context: typer.Context, address: str) -> None:
     context.with_resource(running_on(context.with_resource(RayEngine(address))))
 
 
-def _main(
+def global_options(
     context: typer.Context,
     engine: Annotated[
         str,
@@ -115,6 +107,7 @@ def _main(
         bool, typer.Option("--version", callback=_version, is_eager=True, help="Print the version.")
     ] = False,
 ) -> None:
+    """Do what the options say that stand before a command."""
     tell_warnings(debug)
     for stream in (sys.stdout, sys.stderr):
         # A terminal or file that lacks a sign is shown a question mark for it.
@@ -124,16 +117,17 @@ def _main(
         one_line_errors(_run_on)(context, engine)
 
 
-def _enter(group: typer.Typer, commands: Mapping[str, str]) -> None:
+def add_commands(group: typer.Typer, commands: Mapping[str, str], package: str = "robobt.cli") -> None:
+    """Give an application commands: by name, each a "module:function" of the package."""
     for name, place in commands.items():
         module, _, function = place.partition(":")
-        command = getattr(import_module(f"robobt.cli.{module}"), function)
+        command = getattr(import_module(f"{package}.{module}"), function)
         group.command(name)(one_line_errors(spread(command)))
 
 
 def _moved(name: str, now: str) -> Callable[[typer.Context], None]:
     def say_so(context: typer.Context) -> None:
-        asked = " ".join(context.args) or "--help"
+        asked = shlex.join(context.args) or "--help"
         errors.print(
             f"robobt {name} has moved: in a clone of the repository run {now} {asked}", soft_wrap=True
         )
@@ -151,14 +145,14 @@ def application(only: str | None = None) -> typer.Typer:
         pretty_exceptions_enable=False,
         help="Behaviour trees for robot soccer: play scenarios, look at plays and skills, measure.",
     )
-    made.callback()(_main)
-    _enter(made, {name: place for name, place in _COMMANDS.items() if name == only or not known})
+    made.callback()(global_options)
+    add_commands(made, {name: place for name, place in _COMMANDS.items() if name == only or not known})
     for name, (about, commands) in _GROUPS.items():
         if name == only or not known:
             group = typer.Typer(no_args_is_help=True, help=about)
             # A group of its own even with a single command.
             group.callback()(lambda: None)
-            _enter(group, commands)
+            add_commands(group, commands)
             made.add_typer(group, name=name)
     anything = {"ignore_unknown_options": True, "allow_extra_args": True}
     for name, now in _MOVED.items():
@@ -171,11 +165,16 @@ def application(only: str | None = None) -> typer.Typer:
 
 def main() -> None:
     """Run the command ``robobt``."""
+    run(application, "robobt")
+
+
+def run(make: Callable[[str | None], typer.Typer], name: str) -> None:
+    """Run an application as a program of this name; ``make`` is given the first word of the command line."""
     # What a start imports stays; looking through its 270,000 objects for garbage took an eighth of the start.
     gc.set_threshold(400_000, *gc.get_threshold()[1:])
     try:
         # To make all commands takes as long as many a command itself.
-        application(sys.argv[1] if len(sys.argv) > 1 else None)(prog_name="robobt")
+        make(sys.argv[1] if len(sys.argv) > 1 else None)(prog_name=name)
     except SystemExit as end:
         leave_after_signal(end.code)
         raise

@@ -31,8 +31,8 @@ from robobt.cli.outputs import make_folders
 from robobt.cli.scenario_options import PLAY, TEAM_HELP, Set, scenario_of, with_teams
 
 if TYPE_CHECKING:
-    from robobt.experiments.compare import Compared, Difference
     from robobt.match import MatchResult, Scenario
+    from robobt.match.results.compare import Compared, Difference
 
 
 @dataclass(frozen=True)
@@ -98,7 +98,7 @@ def compare(
     and only_first (trials in which blue scores in one of both only), p (McNemar,
     exact) and holm (p corrected for the number of variants).
     """
-    from robobt.experiments.compare import compare as compared
+    from robobt.match.results.compare import compare as compared
 
     import_files(imports)
     base = scenario_of(scenario, settings)

@@ -34,8 +34,8 @@ def goalkeepers(
     """
     from dataclasses import asdict
 
-    from robobt.experiments.goalkeepers import explain, shots_to_fit
     from robobt.shots.data.problems import ShotDataError
+    from robobt.shots.keepers.explain import explain, shots_to_fit
     from robobt.shots.predict.validation import FOLDS
 
     if out is not None and out.exists() and not force:

@@ -69,11 +69,11 @@ def train(
     import pyarrow as pa
     import torch
 
-    from robobt.experiments.shot_sets import load_shot_sets
     from robobt.models.export import refuse_to_replace
     from robobt.models.file import SUFFIXES
     from robobt.shots.data.files import read_shots
     from robobt.shots.predict.shipped import train_shipped
+    from robobt.shots.predict.shot_sets import load_shot_sets
 
     target = out / f"{name or model.value}{SUFFIXES['torchscript']}"
     refuse_to_replace(target, force)
@@ -125,10 +125,10 @@ def score(
     """
     from numpy import isfinite
 
-    from robobt.experiments.shot_sets import split_file
     from robobt.shots.data.files import read_usable_shots
     from robobt.shots.data.inputs import goals
     from robobt.shots.predict.score import measured, predicted_by
+    from robobt.shots.predict.shot_sets import split_file
 
     shots = read_usable_shots(split_file(data, part.value) if data.is_dir() else data)
     lacking: dict[int, str] = {}
@@ -185,7 +185,7 @@ def draw(
     Keys of --json: picture, x, y (coordinates of the grid in metres) and probability, a
     row for each y, null where nobody may shoot from.
     """
-    from robobt.experiments.goal_map import draw_goal_map, goal_map
+    from robobt.shots.goal_map import draw_goal_map, goal_map
 
     make_folders({"--picture": picture})
     found = goal_map(model, spacing)

@@ -3,7 +3,7 @@ from pathlib import Path
 import pytest
 import torch
 
-from robobt.experiments.deployed import Situation, deployed_scenario
+from paper.deployed import Situation, deployed_scenario
 from robobt.match import run_trials, summarise
 from robobt.match.scenario.scenario import Scenario
 from robobt.plays import attack_learned

@@ -2,21 +2,16 @@
 
 from __future__ import annotations
 
-import io
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.figure import Figure
-
-from robobt.config.atomic import write_atomically
+from robobt.config.figures import new_figure, save_figure
 from robobt.learning.training.results import Validation
 
 
 def draw_curves(runs: Mapping[str, Sequence[Validation]], title: str, path: str | Path) -> None:
     """Write a PNG: success and time of every run over environment steps and over CPU time."""
-    figure = Figure(figsize=(10.0, 6.0), layout="constrained")
-    FigureCanvasAgg(figure)
+    figure = new_figure(10.0, 6.0)
     axes = figure.subplots(2, 2, sharey="row", sharex="col")
     relative = any(validation.time_ratio is not None for run in runs.values() for validation in run)
     for name, run in runs.items():
@@ -40,6 +35,4 @@ def draw_curves(runs: Mapping[str, Sequence[Validation]], title: str, path: str 
     if runs:
         axes[0, 1].legend(loc="lower right", fontsize="small")
     figure.suptitle(title)
-    buffer = io.BytesIO()
-    figure.savefig(buffer, format="png", dpi=120)
-    write_atomically(Path(path), buffer.getvalue())
+    save_figure(figure, Path(path))

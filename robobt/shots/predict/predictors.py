@@ -70,4 +70,4 @@ PREDICTORS: Mapping[str, Callable[[], Pipeline]] = {
     "logistic_standardised": logistic_standardised,
     "best": best_predictor,
 }
-"""Functions without arguments that return an unfitted estimator, by the names of ``robobt paper table3``."""
+"""Functions without arguments that return an unfitted estimator, by name."""

@@ -1,4 +1,4 @@
-"""``robobt paper``: the tables of the paper, its figures beside ours."""
+"""``python -m paper table2`` and ``table3``: predictors of shots, beside the paper's."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from robobt.cli.outputs import make_folders
 from robobt.config.errors import unknown_name
 
 if TYPE_CHECKING:
-    from robobt.experiments.table3 import Table3
+    from paper.table3 import Table3
 
 _Data = Annotated[
     Path | None,
@@ -47,9 +47,9 @@ def table2(
     """
     import torch
 
-    from robobt.experiments.shot_sets import load_shot_sets
-    from robobt.experiments.table2 import HOLD_OUTS
-    from robobt.experiments.table2 import table2 as run
+    from paper.table2 import HOLD_OUTS
+    from paper.table2 import table2 as run
+    from robobt.shots.predict.shot_sets import load_shot_sets
 
     torch.set_num_threads(1)
     sets = load_shot_sets(data)
@@ -115,10 +115,10 @@ def table3(
     """
     import torch
 
-    from robobt.experiments.reliability_diagram import draw_reliability
-    from robobt.experiments.shot_sets import load_shot_sets
-    from robobt.experiments.table3 import table3 as run
+    from paper.reliability_diagram import draw_reliability
+    from paper.table3 import table3 as run
     from robobt.shots.predict.predictors import PREDICTORS
+    from robobt.shots.predict.shot_sets import load_shot_sets
 
     torch.set_num_threads(1)
     for name in model or ():

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from robobt.experiments.table4_starts import SHOOTER
+from paper.table4_starts import SHOOTER
 from robobt.live.session import LOOK, Live
 from robobt.match.loop import Match
 from robobt.world.game import Team

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from robobt.experiments.compare import compare
+from robobt.match.results.compare import compare
 from robobt.match.results.results import MatchResult, RobotResult
 
 

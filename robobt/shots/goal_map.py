@@ -1,22 +1,21 @@
-"""A map of the probability to score, and a picture of the goal line as a rater judges it."""
+"""A map of the probability to score from each place of the opponents' half."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from math import cos, hypot, sin
 from pathlib import Path
 
 import numpy as np
 
-from robobt.experiments.picture import new_figure, save_figure
+from robobt.config.figures import new_figure, save_figure
 from robobt.match.scenario.placing import HELD_DISTANCE
 from robobt.skills.aim.raters.expected_goal import ExpectedGoal
 from robobt.skills.aim.raters.goal_line import goal_candidates
 from robobt.world.field import DIVISION_B, FieldGeometry
 from robobt.world.geometry import FloatArray, Point, direction
 from robobt.world.rules import in_their_defense_area
-from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS, BallState, Frame, RobotState
+from robobt.world.state import ROBOT_RADIUS, BallState, Frame, RobotState
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,43 +66,6 @@ def draw_goal_map(found: GoalMap, path: Path) -> None:
     axes.plot([edge, edge], [-goal, goal], color="C3", linewidth=4)
     axes.set(xlabel="x of the ball [m]", ylabel="y of the ball [m]", aspect="equal")
     axes.set_title("best shot past a goalkeeper that covers the angle")
-    save_figure(figure, path)
-
-
-def draw_goal_line(frame: Frame, me: RobotState, chances: Mapping[str, FloatArray], path: Path) -> None:
-    """Draw a scene with its goal line as raters judge it: the probability at every target point.
-
-    ``chances`` (T,) are for the points of :func:`goal_candidates`, by the rater's name; the path's ending
-    decides the format (.png, .svg, .pdf).
-    """
-    from matplotlib.patches import Circle
-
-    field, ball = frame.field, frame.ball
-    points = goal_candidates(field)
-    figure = new_figure(9.0, 4.4)
-    scene, line = figure.subplots(1, 2, width_ratios=(3, 2))
-    first = next(iter(chances.values()))
-    for point, chance in zip(points[::3], first[::3], strict=True):
-        color = (1.0 - float(chance), 0.15 + 0.6 * float(chance), 0.2)
-        scene.plot([ball.x, point[0]], [ball.y, point[1]], color=color, linewidth=0.8, alpha=0.7)
-    for robots, paint in ((frame.own, "C0"), (frame.opponents, "C1")):
-        for robot in robots:
-            scene.add_patch(Circle(robot.position, ROBOT_RADIUS, color=paint))
-            tip = (robot.x + 0.14 * cos(robot.heading), robot.y + 0.14 * sin(robot.heading))
-            scene.plot([robot.x, tip[0]], [robot.y, tip[1]], color="black", linewidth=1)
-    scene.add_patch(Circle(ball.position, BALL_RADIUS, color="orange"))
-    goal = field.goal_width / 2.0
-    scene.plot([field.half_length] * 2, [-goal, goal], color="C3", linewidth=4)
-    low = min(ball.x, me.x) - 0.4
-    reach = max(abs(ball.y), goal) + 0.4
-    scene.set(xlim=(low, field.half_length + 0.15), ylim=(-reach, reach), aspect="equal")
-    scene.set(xlabel="x [m]", ylabel="y [m]", title=f"{frame.time:.2f} s")
-    for name, values in chances.items():
-        line.plot(values, points[:, 1], label=name)
-    line.set(
-        xlim=(-0.02, 1.02), ylim=(-goal, goal), xlabel="probability of a goal", ylabel="y of the target [m]"
-    )
-    line.legend(loc="best", fontsize=8)
     save_figure(figure, path)
 
 

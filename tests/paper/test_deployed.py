@@ -2,12 +2,11 @@ import json
 from math import hypot
 from pathlib import Path
 
-import numpy as np
 import pytest
 from typer.testing import CliRunner
 
-from robobt.cli import app
-from robobt.experiments.deployed import (
+from paper.__main__ import application
+from paper.deployed import (
     ATTACKERS,
     SITUATIONS,
     STARTS,
@@ -15,7 +14,6 @@ from robobt.experiments.deployed import (
     deployed,
     deployed_scenario,
 )
-from robobt.experiments.goal_map import draw_goal_map, goal_map
 from robobt.match.loop import Match
 from robobt.match.scenario.scenario import Scenario, load_scenario
 from robobt.world.protocol import World
@@ -110,13 +108,13 @@ def test_near_starts_are_two_and_a_half_to_four_and_a_half_metres_away(trial: in
 @pytest.mark.integration
 def test_it_is_printed_as_tables_and_as_json(tmp_path: Path):
     picture = tmp_path / "line.png"
-    options = ["paper", "deployed", "--shots", "1", "-w", "1", "--seed", "3", "--only", "attack_main"]
+    options = ["deployed", "--shots", "1", "-w", "1", "--seed", "3", "--only", "attack_main"]
     options += ["--goalkeeper", "robobulls", "--starts", STARTS[1]]
-    shown = CliRunner().invoke(app, [*options, "--picture", str(picture)])
+    shown = CliRunner().invoke(application(), [*options, "--picture", str(picture)])
     assert shown.exit_code == 0, shown.output
     assert "28 / 100" in shown.output
     assert picture.read_bytes()[:4] == PNG
-    said = json.loads(CliRunner().invoke(app, [*options, "--json"]).output)
+    said = json.loads(CliRunner().invoke(application(), [*options, "--json"]).output)
     assert [cell["speed"] for cell in said["cells"]] == ["half", "full"]
 
 
@@ -124,14 +122,4 @@ def test_it_is_printed_as_tables_and_as_json(tmp_path: Path):
     "wrong", [["--only", "nobody"], ["--goalkeeper", "cat"], ["--starts", "mars"], ["--defenders", "3"]]
 )
 def test_what_there_is_not_is_refused(wrong: list[str]):
-    assert CliRunner().invoke(app, ["paper", "deployed", "-n", "1", *wrong]).exit_code == 2
-
-
-def test_the_map_is_symmetric_and_near_places_are_better_than_far_ones(tmp_path: Path):
-    found = goal_map(spacing=0.5)
-    assert np.allclose(found.probability, found.probability[::-1], atol=1e-4, equal_nan=True)
-    middle = found.probability[len(found.y) // 2]
-    assert middle[list(found.x).index(3.0)] > 0.9 > 0.1 > middle[0]
-    draw_goal_map(found, tmp_path / "map.png")
-    assert (tmp_path / "map.png").read_bytes()[:4] == PNG
-    assert np.isnan(found.probability).any()
+    assert CliRunner().invoke(application(), ["deployed", "-n", "1", *wrong]).exit_code == 2

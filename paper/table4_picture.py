@@ -5,8 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Literal
 
-from robobt.experiments.picture import new_figure, save_figure
-from robobt.experiments.table4_rows import Table4
+from paper.table4_rows import Table4
+from robobt.config.figures import new_figure, save_figure
 
 _PARTS: tuple[tuple[Literal["approach", "pick_up", "shoot"], str, str], ...] = (
     ("approach", "approach", "C0"),

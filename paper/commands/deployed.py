@@ -1,4 +1,4 @@
-"""``robobt paper deployed``: attackers with and without a learned veto."""
+"""``python -m paper deployed``: attackers with and without a learned veto."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ from robobt.cli.outputs import make_folders
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from robobt.experiments.deployed import Attacker, Situation
+    from paper.deployed import Attacker, Situation
 
 
 @dataclass(frozen=True)
@@ -49,7 +49,7 @@ class Faced:
 
     def situations(self) -> list[Situation]:
         """Return the situations that these options leave."""
-        from robobt.experiments.deployed import GOALKEEPERS, SITUATIONS, STARTS
+        from paper.deployed import GOALKEEPERS, SITUATIONS, STARTS
 
         one_of(self.goalkeeper or [], GOALKEEPERS, "--goalkeeper")
         one_of(self.starts or [], STARTS, "--starts")
@@ -112,9 +112,9 @@ def deployed(
     same start), errors, against_first and against_half_speed (McNemar: only_this, only_other, p),
     paper (goals, shots).
     """
-    from robobt.experiments.deployed import ATTACKERS, SEED
-    from robobt.experiments.deployed import deployed as run
-    from robobt.experiments.judged_goal_line import judged_goal_line
+    from paper.deployed import ATTACKERS, SEED
+    from paper.deployed import deployed as run
+    from paper.judged_goal_line import judged_goal_line
     from robobt.worlds import SIM
 
     one_of(only or [], ATTACKERS, "--only")

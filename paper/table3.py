@@ -10,12 +10,12 @@ import torch
 from numpy.typing import NDArray
 from sklearn.pipeline import Pipeline
 
-from robobt.experiments.shot_sets import ShotSets
 from robobt.shots.data.inputs import goals, shot_inputs
 from robobt.shots.data.problems import ShotDataError
 from robobt.shots.predict.features import paper_features
 from robobt.shots.predict.network_classifier import NetworkClassifier
 from robobt.shots.predict.predictors import PREDICTORS
+from robobt.shots.predict.shot_sets import ShotSets
 from robobt.shots.predict.validation import judge, judge_repeats, predict_folds, stratified_folds
 from robobt.statistics import ReliabilityBin, mcnemar, mean_interval, reliability, wilson_interval
 from robobt.world.geometry import FloatArray

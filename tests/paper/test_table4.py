@@ -11,15 +11,15 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
-from robobt.cli import app
+from paper.__main__ import application
+from paper.table4 import COMBINATIONS, Conditions, table4
+from paper.table4 import LEARNED as LEARNED_ROW
+from paper.table4_picture import draw_table4
+from paper.table4_rows import PAPER
+from paper.table4_runs import Attempt, play_attempt
+from paper.table4_starts import LIMITS, drawn_starts, minimum_times, table4_scenario
 from robobt.engines.run import running_on
 from robobt.engines.work import Work
-from robobt.experiments.table4 import COMBINATIONS, Conditions, table4
-from robobt.experiments.table4 import LEARNED as LEARNED_ROW
-from robobt.experiments.table4_picture import draw_table4
-from robobt.experiments.table4_rows import PAPER
-from robobt.experiments.table4_runs import Attempt, play_attempt
-from robobt.experiments.table4_starts import LIMITS, drawn_starts, minimum_times, table4_scenario
 from robobt.match import load_scenario
 from robobt.match.loop import Match, WorldFactory
 from robobt.match.results.file import ResultsFileError
@@ -76,7 +76,7 @@ def test_runs_that_were_kept_are_not_played_again(tmp_path: Path, monkeypatch: p
         played.append(trial)
         return play_attempt(scenario, seed, world, trial)
 
-    monkeypatch.setattr("robobt.experiments.table4_runs.play_attempt", killed_at_the_second)
+    monkeypatch.setattr("paper.table4_runs.play_attempt", killed_at_the_second)
     with pytest.raises(KeyboardInterrupt):
         table4(3, out=tmp_path, **kinds)
     (file,) = tmp_path.iterdir()
@@ -117,7 +117,7 @@ def test_what_goes_wrong_in_a_run_is_named_with_its_row(monkeypatch: pytest.Monk
     def broken(*_: object) -> Attempt:
         raise ZeroDivisionError("on purpose")
 
-    monkeypatch.setattr("robobt.experiments.table4_runs.play_attempt", broken)
+    monkeypatch.setattr("paper.table4_runs.play_attempt", broken)
     with pytest.raises(RunError, match=r"run 0 of 'robobulls' \(trial 1, limits own\): ZeroDivisionError"):
         table4(1, combinations=QUICK[:1], conditions=Conditions(limits=["own"]))
 
@@ -148,7 +148,7 @@ def test_all_rows_start_from_the_same_places() -> None:
         assert max(abs(ball.x), abs(ball.y - 1.5)) <= 0.05
 
 
-@pytest.mark.parametrize("name", ["paper", "pilot"])
+@pytest.mark.parametrize("name", ["pilot"])
 def test_limits_bind_every_robot(name: str) -> None:
     start = start_of(table4_scenario("1", {}, limits=LIMITS[name]), 1)
     assert start.own[0].limits.max_speed == 1.5
@@ -193,7 +193,7 @@ def test_a_run_is_the_bundled_scenario_played_with_the_same_seed() -> None:
 
 @pytest.mark.parametrize("trial", ["1", "2"])
 def test_the_learned_skills_score_and_are_sooner_at_the_ball_than_the_papers(trial: str) -> None:
-    """At the paper's limits; six of the hundred runs of ``robobt paper table4 --runs 100``."""
+    """At the paper's limits; six of the hundred runs of ``python -m paper table4 --runs 100``."""
     found = table4(6, combinations=[LEARNED_ROW], conditions=Conditions(limits=["paper"]), trials=[trial])
     row = found["limits"]["paper"][trial]["rows"][LEARNED_ROW]
     assert row["goals"].count == 6
@@ -229,13 +229,13 @@ def test_the_picture_is_written_whole_or_not_at_all(tmp_path: Path) -> None:
 
 
 def test_the_command_prints_and_is_read_by_programs() -> None:
-    call = ["paper", "table4", "--runs", "1", "--only", "geometric, kick", "--limits", "paper"]
-    shown = CliRunner().invoke(app, call)
+    call = ["table4", "--runs", "1", "--only", "geometric, kick", "--limits", "paper"]
+    shown = CliRunner().invoke(application(), call)
     assert shown.exit_code == 0, shown.output
     assert "baseline" in shown.stdout
     assert "minimum  " in shown.stdout
     assert "1/1" in shown.stdout
-    told = json.loads(CliRunner().invoke(app, [*call, "--json"]).stdout)
+    told = json.loads(CliRunner().invoke(application(), [*call, "--json"]).stdout)
     assert told["runs"] == 1
     assert set(told["limits"]["paper"]["2"]["rows"]) == {"geometric, kick"}
 
@@ -254,5 +254,5 @@ def test_the_command_prints_and_is_read_by_programs() -> None:
     ],
 )
 def test_what_there_is_not_is_said(wrong: list[str]) -> None:
-    refused = CliRunner().invoke(app, ["paper", "table4", "--runs", "1", *wrong])
+    refused = CliRunner().invoke(application(), ["table4", "--runs", "1", *wrong])
     assert refused.exit_code == 2

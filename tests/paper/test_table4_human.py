@@ -6,11 +6,11 @@ from typing import Any
 
 import pytest
 
-from robobt.experiments.table4 import HUMAN, Conditions, table4
-from robobt.experiments.table4_human import HumanRuns
-from robobt.experiments.table4_rows import PAPER
-from robobt.experiments.table4_runs import play_attempt
-from robobt.experiments.table4_starts import LIMITS, drawn_starts, table4_scenario
+from paper.table4 import HUMAN, Conditions, table4
+from paper.table4_human import HumanRuns
+from paper.table4_rows import PAPER
+from paper.table4_runs import play_attempt
+from paper.table4_starts import LIMITS, drawn_starts, table4_scenario
 from robobt.live.server import Server
 from robobt.live.session import Live
 from robobt.match.runner import trial_seed

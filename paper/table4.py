@@ -9,7 +9,7 @@ from pathlib import Path
 from statistics import fmean, stdev
 from typing import NamedTuple
 
-from robobt.experiments.table4_rows import (
+from paper.table4_rows import (
     PAPER,
     Comparison,
     Minimum,
@@ -19,8 +19,8 @@ from robobt.experiments.table4_rows import (
     Table4,
     Trial,
 )
-from robobt.experiments.table4_runs import Attempt, Series, Show, play_series
-from robobt.experiments.table4_starts import LIMITS, Starts, drawn_starts, table4_scenario
+from paper.table4_runs import Attempt, Series, Show, play_series
+from paper.table4_starts import LIMITS, Starts, drawn_starts, table4_scenario
 from robobt.match.loop import WorldFactory
 from robobt.match.results.results import Rate
 from robobt.statistics import mean_interval

@@ -8,7 +8,7 @@ from typing import Literal
 
 import numpy as np
 
-from robobt.experiments.table4_rows import Minimum
+from paper.table4_rows import Minimum
 from robobt.learning.envs.episodes import straight_line_time
 from robobt.match.scenario.scenario import Scenario, load_scenario
 from robobt.match.scenario.starts import Box

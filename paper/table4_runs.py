@@ -10,10 +10,10 @@ from typing import NamedTuple
 
 from pydantic import ConfigDict
 
+from paper.table4_starts import SHOOTER, gap, minimum_times
 from robobt.config.errors import RobobtError
 from robobt.engines.run import run_tasks
 from robobt.engines.work import Work
-from robobt.experiments.table4_starts import SHOOTER, gap, minimum_times
 from robobt.match.loop import Match, WorldFactory
 from robobt.match.results.file import TrialsFile
 from robobt.match.runner import RunError, trial_seed

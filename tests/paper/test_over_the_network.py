@@ -7,9 +7,9 @@ import json
 import pytest
 from typer.testing import CliRunner
 
-from robobt.cli import app
-from robobt.experiments.deployed import SITUATIONS, deployed, deployed_scenario
-from robobt.experiments.table4 import COMBINATIONS, Conditions, table4, table4_scenario
+from paper.__main__ import application
+from paper.deployed import SITUATIONS, deployed, deployed_scenario
+from paper.table4 import COMBINATIONS, Conditions, table4, table4_scenario
 from robobt.league.serve.serving import served_scenario
 from robobt.league.wire.endpoints import Endpoints
 from robobt.match.scenario.scenario import Scenario
@@ -56,14 +56,14 @@ def test_the_deployed_attackers_play_on_a_served_field() -> None:
 
 
 def test_over_the_network_there_is_one_worker() -> None:
-    shown = CliRunner().invoke(app, ["paper", "deployed", "-n", "1", "-w", "2", "--world", "league://grsim"])
+    shown = CliRunner().invoke(application(), ["deployed", "-n", "1", "-w", "2", "--world", "league://grsim"])
     assert shown.exit_code == 2
     assert "must be 1 to play over" in " ".join(shown.output.split())
 
 
 @pytest.mark.parametrize("table", ["table4", "deployed"])
 def test_a_world_that_is_none_is_one_line(table: str) -> None:
-    shown = CliRunner().invoke(app, ["paper", table, "--world", "league://elsewhere", "--json"])
+    shown = CliRunner().invoke(application(), [table, "--world", "league://elsewhere", "--json"])
     assert shown.exit_code == 1
     assert "league://elsewhere" in shown.output
     with pytest.raises(json.JSONDecodeError):

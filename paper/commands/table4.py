@@ -1,4 +1,4 @@
-"""``robobt paper table4``: get the ball and shoot, by hand-written and learned skills."""
+"""``python -m paper table4``: get the ball and shoot, by hand-written and learned skills."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ from robobt.cli.outputs import make_folders
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from robobt.experiments.table4_rows import PaperRow, Spread, Trial
+    from paper.table4_rows import PaperRow, Spread, Trial
 
 
 _FEW = 100
@@ -143,11 +143,11 @@ def table4(
     best_hand_written, which kicks first; to_ball and to_kick, the learned one against it
     (n, mean, low, high, effect), negative where the learned one is faster.
     """
+    from paper.table4 import COMBINATIONS, TRIALS, Conditions
+    from paper.table4 import table4 as run
+    from paper.table4_picture import draw_table4
+    from paper.table4_starts import LIMITS
     from robobt.engines.run import engine
-    from robobt.experiments.table4 import COMBINATIONS, TRIALS, Conditions
-    from robobt.experiments.table4 import table4 as run
-    from robobt.experiments.table4_picture import draw_table4
-    from robobt.experiments.table4_starts import LIMITS
     from robobt.sim.settings import PRESETS, REALISM
 
     one_of([setting.preset], PRESETS, "--preset")
@@ -164,7 +164,7 @@ def table4(
     with ExitStack() as stack:
         show = None
         if human:
-            from robobt.experiments.table4_human import HumanRuns
+            from paper.table4_human import HumanRuns
             from robobt.live.session import Live
 
             show = HumanRuns(Live(stack.enter_context(page.server())))

@@ -1,0 +1,1 @@
+"""The commands of ``python -m paper``: each parses its options, makes a table and prints it."""
