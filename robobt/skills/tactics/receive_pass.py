@@ -160,12 +160,12 @@ class ReceivePass(Skill):
         if angle > self.widest + (0.1 if self._redirecting else 0.0):
             self._redirecting = False
             return None
-        shot = shot_from(x, y, time, plan.their_movers, plan.numbers)
-        if shot.chance < self.redirect_at * (0.5 if self._redirecting else 1.0):
+        chance, goal_y, half_angle = shot_from(x, y, time, plan.their_movers, plan.numbers)
+        if chance < self.redirect_at * (0.5 if self._redirecting else 1.0):
             self._redirecting = False
             return None
         self._redirecting = True
-        store.shot = Shot((field.half_length, shot.y), max(0.01, shot.half_angle), shot.chance)
+        store.shot = Shot((field.half_length, goal_y), max(0.01, half_angle), chance)
         v = max(0.3, speed - 0.5 * time)
         to_goal = field.half_length - x
-        return aim_of(to_goal, shot.y - y, ux * v, uy * v, tactics.shot_speed, tactics.fastest)
+        return aim_of(to_goal, goal_y - y, ux * v, uy * v, tactics.shot_speed, tactics.fastest)
