@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from paper.predictors import logistic, logistic_standardised, table_one
 from robobt.shots.data.inputs import goals, shot_inputs
-from robobt.shots.predict.predictors import logistic, logistic_standardised, table_one
 from robobt.shots.predict.shot_sets import ShotSets
 from robobt.shots.predict.validation import FOLDS, accuracies, predict_folds, stratified_folds
 from robobt.statistics import PairedTest, corrected_resampled_t_test, mean_interval

@@ -10,11 +10,11 @@ import torch
 from numpy.typing import NDArray
 from sklearn.pipeline import Pipeline
 
+from paper.predictors import PREDICTORS
 from robobt.shots.data.inputs import goals, shot_inputs
 from robobt.shots.data.problems import ShotDataError
 from robobt.shots.predict.features import paper_features
 from robobt.shots.predict.network_classifier import NetworkClassifier
-from robobt.shots.predict.predictors import PREDICTORS
 from robobt.shots.predict.shot_sets import ShotSets
 from robobt.shots.predict.validation import judge, judge_repeats, predict_folds, stratified_folds
 from robobt.statistics import ReliabilityBin, mcnemar, mean_interval, reliability, wilson_interval
@@ -127,7 +127,7 @@ def table3(
         sets: the shots.
         seeds: how often the network is trained, seeds 0, 1, ...
         repeats: of the tenfold cross-validation; 0 for none.
-        models: names of :data:`~robobt.shots.predict.predictors.PREDICTORS`.
+        models: names of :data:`~paper.predictors.PREDICTORS`.
         progress: called after every model.
 
     Raises:

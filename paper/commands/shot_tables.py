@@ -115,9 +115,9 @@ def table3(
     """
     import torch
 
+    from paper.predictors import PREDICTORS
     from paper.reliability_diagram import draw_reliability
     from paper.table3 import table3 as run
-    from robobt.shots.predict.predictors import PREDICTORS
     from robobt.shots.predict.shot_sets import load_shot_sets
 
     torch.set_num_threads(1)

@@ -13,9 +13,6 @@ from numpy.typing import ArrayLike
 from robobt.world.features import SCENE_HEAD, SHOT_SCENE
 from robobt.world.geometry import FloatArray
 
-KICK_SPEED = 7.5
-"""Speed of the recorded shots [m/s]: a constant input where the ball's speed is not recorded."""
-
 
 def pair_features(scenes: ArrayLike) -> FloatArray:
     """Return Eq. 4, :data:`~robobt.world.features.SHOT`: angle [rad], L, opponent's distance, x, b [m]."""
@@ -26,12 +23,6 @@ def pair_features(scenes: ArrayLike) -> FloatArray:
 def paper_features(scenes: ArrayLike) -> FloatArray:
     """Return Eq. 4 in the author's units: rad and mm."""
     return pair_features(scenes) * [1.0, 1e3, 1e3, 1e3, 1e3]
-
-
-def kiks_features(scenes: ArrayLike) -> FloatArray:
-    """Return Naito et al.'s: speed of the shot [m/s], opponent's distance [m] and angle to the shot [rad]."""
-    angle, _, distance, _, _ = pair_features(scenes).T
-    return np.stack([np.full_like(angle, KICK_SPEED), distance, angle], axis=-1)
 
 
 def motion_features(scenes: ArrayLike) -> FloatArray:

@@ -35,9 +35,6 @@ class Layer(NamedTuple):
 TABLE_ONE = (Layer(True, 6, "relu"), Layer(True, 3, "silu"), Layer(False, 1, "linear"))
 """The paper's network (Table 1); the sigmoid that ends it is part of the loss."""
 
-KIKS = (Layer(True, 8, "relu"), Layer(True, 8, "relu"), Layer(True, 1, "linear"))
-"""Three dense layers with batch normalisation (Naito et al.); their sizes are not published."""
-
 
 class ShotNetwork(nn.Module):
     """A network of :class:`Layer` that answers the logit of a goal.

@@ -1,43 +1,18 @@
-"""Shot predictors by name: unfitted scikit-learn estimators over a shot's scene.
+"""The predictor for a few hundred recorded shots: an unfitted scikit-learn estimator over a shot's scene.
 
-All take X = :func:`~robobt.shots.data.inputs.shot_inputs` (n, 34) and y =
-:func:`~robobt.shots.data.inputs.goals`, and answer ``predict_proba`` with the
+It takes X = :func:`~robobt.shots.data.inputs.shot_inputs` (n, 34) and y =
+:func:`~robobt.shots.data.inputs.goals`, and answers ``predict_proba`` with the
 probability of a goal in the second column.
 """
 
 from __future__ import annotations
-
-from collections.abc import Callable, Mapping
 
 from sklearn.impute import SimpleImputer
 from sklearn.linear_model import LogisticRegression
 from sklearn.pipeline import Pipeline, make_pipeline
 from sklearn.preprocessing import FunctionTransformer, PolynomialFeatures, StandardScaler
 
-from robobt.shots.predict.batched import Recipe
-from robobt.shots.predict.features import kiks_features, motion_features, paper_features
-from robobt.shots.predict.network_classifier import NetworkClassifier
-from robobt.shots.predict.networks import KIKS
-
-
-def table_one() -> Pipeline:
-    """Return the paper's network (Table 1) on its five inputs, in millimetres as the author fed it."""
-    return make_pipeline(FunctionTransformer(paper_features), NetworkClassifier())
-
-
-def kiks() -> Pipeline:
-    """Return Naito et al.'s network on speed of the shot, opponent's distance and angle."""
-    return make_pipeline(FunctionTransformer(kiks_features), NetworkClassifier(Recipe(KIKS)))
-
-
-def logistic() -> Pipeline:
-    """Return the paper's linear logistic regression: liblinear on the raw millimetres and radians."""
-    return make_pipeline(FunctionTransformer(paper_features), LogisticRegression(solver="liblinear"))
-
-
-def logistic_standardised() -> Pipeline:
-    """Return the same on standardised inputs, which is all it lacked against the network."""
-    return make_pipeline(FunctionTransformer(paper_features), StandardScaler(), LogisticRegression())
+from robobt.shots.predict.features import motion_features
 
 
 def best_predictor() -> Pipeline:
@@ -61,13 +36,3 @@ def best_predictor() -> Pipeline:
         PolynomialFeatures(2, include_bias=False),
         LogisticRegression(C=3.0, max_iter=1000),
     )
-
-
-PREDICTORS: Mapping[str, Callable[[], Pipeline]] = {
-    "table_one": table_one,
-    "kiks": kiks,
-    "logistic": logistic,
-    "logistic_standardised": logistic_standardised,
-    "best": best_predictor,
-}
-"""Functions without arguments that return an unfitted estimator, by name."""

@@ -3,7 +3,7 @@ import pytest
 import torch
 
 from robobt.shots.predict.batched import Recipe, Task, batch_bounds, train_networks
-from robobt.shots.predict.networks import KIKS, TABLE_ONE, Layer, ShotNetwork
+from robobt.shots.predict.networks import TABLE_ONE, Layer, ShotNetwork
 from tests.shots.predict.plain_training import train_plainly
 
 
@@ -19,7 +19,11 @@ def _apart(one: ShotNetwork, other: ShotNetwork, task: Task) -> float:
         return float((one(task.held_inputs) - other(task.held_inputs)).abs().max())
 
 
-@pytest.mark.parametrize("layers", [TABLE_ONE, KIKS, (Layer(False, 3, "silu"), Layer(False, 1, "linear"))])
+NORMALISED = (Layer(True, 8, "relu"), Layer(True, 8, "relu"), Layer(True, 1, "linear"))
+PLAIN = (Layer(False, 3, "silu"), Layer(False, 1, "linear"))
+
+
+@pytest.mark.parametrize("layers", [TABLE_ONE, NORMALISED, PLAIN])
 def test_each_network_of_a_stack_is_what_the_plain_loop_makes_of_it(layers: tuple[Layer, ...]):
     # 39 and 40 share a stack and end in batches of 7 and 8; 33 leaves one sample
     # over; 20 has fewer batches than the rest.

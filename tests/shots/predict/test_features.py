@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from robobt.shots.data import read_shots, shot_inputs
-from robobt.shots.predict.features import kiks_features, motion_features, pair_features, paper_features
+from robobt.shots.predict.features import motion_features, pair_features, paper_features
 from robobt.world.features import SCENE_HEAD, SHOT_SCENE, shot_features
 from tests.shots.made_up import made_up_table
 from tests.shots.real_data import REAL_SHOTS, needs_real_shots
@@ -19,10 +19,9 @@ def test_the_pair_features_are_those_of_the_rater_and_the_papers_are_the_same_in
     scenes = shot_inputs(table)
     assert pair_features(scenes)[3] == pytest.approx(eq4)
     assert paper_features(scenes)[3] == pytest.approx(eq4 * [1.0, 1e3, 1e3, 1e3, 1e3])
-    assert kiks_features(scenes)[3] == pytest.approx([7.5, eq4[2], eq4[0]])
 
 
-@pytest.mark.parametrize("features", [paper_features, kiks_features, motion_features])
+@pytest.mark.parametrize("features", [paper_features, motion_features])
 def test_a_mirrored_shot_has_the_same_features(features):
     scenes = shot_inputs(made_up_table(20))
     mirrored = scenes.copy()

@@ -1,15 +1,15 @@
 import numpy as np
 import pytest
 from sklearn.base import clone
-from sklearn.pipeline import Pipeline
+from sklearn.pipeline import make_pipeline
+from sklearn.preprocessing import FunctionTransformer
 from sklearn.utils.estimator_checks import parametrize_with_checks
 
 from robobt.shots.data import goals, read_shots, shot_inputs
-from robobt.shots.predict import PREDICTORS, best_predictor
+from robobt.shots.predict import best_predictor
 from robobt.shots.predict.batched import Recipe
+from robobt.shots.predict.features import paper_features
 from robobt.shots.predict.network_classifier import NetworkClassifier
-from robobt.shots.predict.networks import KIKS
-from robobt.shots.predict.predictors import table_one
 from robobt.shots.predict.validation import accuracies, judge_repeats, predict_folds, stratified_folds
 from robobt.world.features import SCENE_HEAD
 from tests.shots.made_up import QUICK, made_up_table
@@ -18,32 +18,9 @@ from tests.shots.real_data import REAL_SHOTS, needs_real_shots
 pytestmark = pytest.mark.integration
 
 
-def _quick(predictor: Pipeline) -> Pipeline:
-    """A predictor that learns in less time than it should."""
-    if "networkclassifier" in predictor.named_steps:
-        predictor.set_params(networkclassifier__recipe=QUICK)
-    return predictor
-
-
 @parametrize_with_checks([NetworkClassifier(QUICK)])
 def test_the_network_keeps_to_scikit_learns_contract(estimator, check):
     check(estimator)
-
-
-@pytest.mark.parametrize("name", PREDICTORS)
-def test_every_predictor_fits_clones_and_answers_probabilities(name: str):
-    table = made_up_table(160)
-    x, y = shot_inputs(table), goals(table)
-    estimator = _quick(PREDICTORS[name]())
-    fitted = clone(estimator).fit(x[:120], y[:120])
-    p = fitted.predict_proba(x[120:])
-    assert p.shape == (40, 2)
-    assert ((p >= 0.0) & (p <= 1.0)).all()
-    np.testing.assert_allclose(p.sum(axis=1), 1.0)
-    assert list(fitted.classes_) == [0, 1]
-    np.testing.assert_array_equal(fitted.predict(x[120:]), (p[:, 1] >= 0.5).astype(int))
-    # Fitted again it is the same: what is random follows from a parameter.
-    np.testing.assert_array_equal(clone(estimator).fit(x[:120], y[:120]).predict_proba(x[120:]), p)
 
 
 def test_the_best_predictor_learns_a_law_made_of_the_goalkeepers_speed():
@@ -74,7 +51,7 @@ def test_the_folds_of_a_network_trained_at_once_are_those_trained_alone():
     table = made_up_table(120)
     x, y = shot_inputs(table), goals(table)
     folds = stratified_folds(y, 1)
-    predictor = _quick(table_one())
+    predictor = make_pipeline(FunctionTransformer(paper_features), NetworkClassifier(QUICK))
     together = predict_folds(predictor, x, y, folds)
     for i, (train, test) in enumerate(folds[:3]):
         alone = clone(predictor).set_params(networkclassifier__random_state=i).fit(x[train], y[train])
@@ -109,13 +86,6 @@ def test_a_network_holds_out_the_samples_it_is_given():
     assert np.abs(one - other).max() > 1e-6
     with pytest.raises(ValueError, match="held_out"):
         network.fit_many([(x, y)], held_out=np.ones(60, dtype=bool))
-
-
-def test_the_layers_of_a_network_are_those_of_its_recipe():
-    network = (
-        NetworkClassifier(Recipe(KIKS, warm_up=1, epochs=1)).fit(np.eye(30, 3), np.arange(30) % 2).network_
-    )
-    assert [dense.out_features for dense in network.dense] == [8, 8, 1]
 
 
 @needs_real_shots
