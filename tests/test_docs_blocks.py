@@ -244,7 +244,7 @@ NOT_HERE = {
     "robobt live": "tests/cli/test_live.py: it lasts until Ctrl-C",
     "robobt serve": "tests/cli/test_league.py: it lasts until Ctrl-C, on ports that nobody uses",
     "log.gz": "tests/cli/test_league.py: it takes the log of a match",
-    "bench train": "tests/cli/test_train.py: it takes hours",
+    "python -m benchmarks": "tests/benchmarks/test_commands.py: it takes hours",
 }
 """By a word of it, where a command runs that cannot run here; test_docs reads it as robobt does."""
 
