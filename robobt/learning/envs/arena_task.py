@@ -119,6 +119,9 @@ class ArenaTask:
         self._own_terms: NDArray[np.void] | None = None
         judged_by = next(kind for kind in type(self).__mro__ if "_judge" in vars(kind))
         self._own_reward = type(self).reward is not judged_by.__dict__.get("reward", ArenaTask.reward)
+        self._own_observations = not type(self).observe.__module__.startswith("robobt.") or isinstance(
+            self.observation, Observation
+        )
         self._own_opponents = not type(self).oppose.__module__.startswith("robobt.")
         self._own_ends = type(self).ends is not judged_by.__dict__.get("ends", ArenaTask.ends)
 
@@ -353,7 +356,7 @@ class ArenaTask:
         rows = given.reshape(len(filled), self.action.size)
         if not fill_commands(rows, self._scaling, *self._kind, kick, filled):
             raise ValueError("an action is not finite")
-        self._commands[:, self.learners] = filled.reshape(self.n, each, size(COMMAND))
+        self._commands[:, self.learners] = filled.reshape(self.n, each, -1)
         rewards = np.zeros(self.n)
         ends = Ends.none(self.n)
         last = self.settings.decide_every - 1
@@ -442,9 +445,8 @@ class ArenaTask:
         self._pool = StartPool(
             partial(checked_starts, self, len(self.start_columns)), self._start_rngs, len(self.start_columns)
         )
-        self._perception = Perception(
-            settings, partial(call, self, "observe"), self.observation_size, robots, self._noise_rngs
-        )
+        observe = partial(call, self, "observe") if self._own_observations else self.observe
+        self._perception = Perception(settings, observe, self.observation_size, robots, self._noise_rngs)
         self._randomiser = Randomiser(settings, self.arenas, self._parameter_rngs)
         self._commands = np.zeros((n, robots, size(COMMAND)))
         self._filled = np.zeros((n * len(self.learners), size(COMMAND)))
