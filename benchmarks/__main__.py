@@ -9,6 +9,7 @@ from importlib import import_module
 import typer
 
 from robobt.cli import add_commands, global_options, run
+from robobt.cli.common import one_line_errors
 
 COMMANDS = {
     "sim": "sim:sim",
@@ -59,7 +60,9 @@ def application(only: str | None = None) -> typer.Typer:
     anything = {"ignore_unknown_options": True, "allow_extra_args": True}
     for name, about in SCRIPTS.items():
         if name == only or not known:
-            made.command(name, help=about, add_help_option=False, context_settings=anything)(_script(name))
+            made.command(name, help=about, add_help_option=False, context_settings=anything)(
+                one_line_errors(_script(name))
+            )
     return made
 
 

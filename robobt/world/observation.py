@@ -63,7 +63,10 @@ class Seen:
 def seen(robots: FloatArray, balls: FloatArray, own: int, field: FieldGeometry) -> Seen:
     """Return arrays (n, R, 6) and (n, 4) by the names of their numbers; the rest is as for :class:`Seen`."""
     bodies, rolling = np.ascontiguousarray(robots), np.ascontiguousarray(balls)
-    return Seen(bodies.view(ROBOT)[..., 0], rolling.view(BALL)[..., 0], own, field)
+    found = Seen(bodies.view(ROBOT)[..., 0], rolling.view(BALL)[..., 0], own, field)
+    # Who looks must not move what is there.
+    found.robots.flags.writeable = found.balls.flags.writeable = False
+    return found
 
 
 SCALES = "max_speed", "max_turn"

@@ -101,9 +101,17 @@ class ArenaTask:
                 f"{type(self).__name__}: learners must be of the robots {known}, not {self.learners}"
             )
         columns = columns_of(self.robots)
+        settings = self.Settings() if settings is None else settings
+        if tuple(self.learners) != tuple(settings.learners):
+            raise ValueError(
+                f"{type(self).__name__}: learners must be {settings.learners}, not {self.learners}; several "
+                "robots learn in subclasses of SoccerTask"
+            )
+        if settings.decide_every < 1 or settings.time_limit < 1:
+            raise ValueError(f"{type(self).__name__}: decide_every and time_limit must be at least 1")
         if len(self.start_columns) < len(columns):
             self.start_columns = columns
-        self.settings = settings = self.Settings() if settings is None else settings
+        self.settings = settings
         self.n = n
         self.action = settings.action
         self.observation_size = len(self.learners) * self.observation.size
@@ -464,7 +472,7 @@ class ArenaTask:
         self._randomiser.draw(which)
         robots, balls, _ = split(rows, self.robots)
         self.arenas.place(robots, balls, which)
-        self.begin(rows, which)
+        call(self, "begin", rows, which)
         self._progress[which] = progress_at(balls)
         self._terms[which] = np.zeros(len(which), dtype=self._terms.dtype)
         self._optimal_time[which] = self._optimum(rows, which)

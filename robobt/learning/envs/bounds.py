@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from math import hypot, sqrt
+from math import hypot, inf, sqrt
 
 import numpy as np
 from gymnasium.spaces import Box
@@ -35,9 +35,17 @@ def bounded(spec: ObservationSpec, ranges: Mapping[str, float]) -> Box[np.float3
 
 
 def scale_of(spec: ObservationSpec, action: ActionScaling) -> tuple[float, ...]:
-    """Return the typical magnitude of each entry of ``spec``, where a robot acts as ``action`` says."""
+    """Return the typical magnitude of each entry of ``spec``, where a robot acts as ``action`` says.
+
+    Raises:
+        ValueError: one is not above 0, as the top speed of an action that does not drive.
+    """
     sizes = [one.scale for one in spec.entries]
-    return tuple([getattr(action, size) if isinstance(size, str) else size for size in sizes])
+    found = tuple([getattr(action, size) if isinstance(size, str) else size for size in sizes])
+    for one, scale in zip(spec.entries, found, strict=True):
+        if not 0.0 < scale < inf:
+            raise ValueError(f"the scale of the entry {one.name!r} must be above 0, not {scale!r}")
+    return found
 
 
 def ranges_of(settings: TaskSettings) -> dict[str, float]:

@@ -14,6 +14,9 @@ from robobt.plays.sources import read_sources
 
 REGISTRIES.append(TASKS)
 
+_digests: dict[str, str] = {}
+"""Of the code of users' tasks, by module, as it was when it was first asked for."""
+
 
 def find_task(name: str) -> type[ArenaTask]:
     """Return a task by the name it is registered under, or by Gymnasium's for it.
@@ -59,7 +62,10 @@ def task_file(settings: TaskSettings) -> tuple[str, str]:
     file = getattr(sys.modules.get(module), "__file__", None)
     if file is None or module.partition(".")[0] == "robobt":
         return "", ""
-    return file, read_sources([file]).digest()
+    # Read once: what is edited while a run goes on is not what this process runs.
+    if module not in _digests:
+        _digests[module] = read_sources([file]).digest()
+    return file, _digests[module]
 
 
 def make_task(settings: TaskSettings, n: int) -> ArenaTask:

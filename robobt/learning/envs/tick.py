@@ -108,6 +108,10 @@ def checked_ends(task: object, tick: Tick, n: int) -> tuple[BoolArray, BoolArray
     ):
         problem = ValueError(f"returns no pair of arrays ({n},): success, and other ends")
         raise error_of(type(task), "ends", problem)
+    for part, name in zip(parts, ("success", "other ends"), strict=True):
+        if np.asarray(part).dtype != np.bool_:
+            problem = ValueError(f"returns {np.asarray(part).dtype} for {name}, not truth values")
+            raise error_of(type(task), "ends", problem)
     success, failed = (np.broadcast_to(np.asarray(part, dtype=np.bool_), n) for part in parts)
     return success, failed
 

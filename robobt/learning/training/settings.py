@@ -10,7 +10,7 @@ from pydantic import BaseModel, Field, SerializeAsAny, ValidationError, model_va
 from robobt.config.validation import Settings, first_problem
 from robobt.learning.agents.settings import AgentSettings, PPOSettings
 from robobt.learning.envs import TaskSettings, find_task, make_task
-from robobt.learning.envs.make import learners_of, make_rows
+from robobt.learning.envs.make import learners_of, make_rows, task_file
 from robobt.learning.envs.soccer.settings import SoccerSettings
 from robobt.learning.training.arenas import opposed
 from robobt.learning.training.preset_files import SettingsError as SettingsError
@@ -132,7 +132,9 @@ def load_settings(
     """
     _model(task, "")
     data, source = read_preset(task, preset)
-    data = {"task": task, **data, "preset": preset}
+    if data.get("task", task) != task:
+        raise SettingsError(source, f"is {data['task']}, where {task} is trained", "task")
+    data = {**data, "task": task, "preset": preset}
     if "task" in (changes or {}):
         raise SettingsError(source, f"is what is trained, {task}: name another one instead", "task")
     for name, value in (changes or {}).items():
@@ -143,7 +145,7 @@ def load_settings(
     environment = settings.environment
     try:
         arenas = make_task(environment, 1)
-        _ = arenas.space
+        _ = arenas.space, arenas.scale, task_file(environment)
     except Exception as error:
         raise SettingsError(settings.task, f"{type(error).__name__}: {error}") from error
     if settings.central and not arenas.central:

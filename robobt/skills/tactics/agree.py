@@ -20,9 +20,10 @@ from robobt.skills.tactics.assignment import assign
 from robobt.skills.tactics.attacker import NOBODY, Candidate, choose_attacker, may_be_attacked
 from robobt.skills.tactics.defence import mark_places, threats, wall_places
 from robobt.skills.tactics.support import short_place, support_places
+from robobt.world.compiled import compiled_lean
 from robobt.world.game import Restart
-from robobt.world.geometry import Point, distance
-from robobt.world.records import MEETING, MOVER, ball_of, movers_of
+from robobt.world.geometry import FloatArray, Point, distance
+from robobt.world.records import MEETING, MOVER, Mover, ball_of, movers_of
 from robobt.world.rules import has_ball, owner
 from robobt.world.state import Frame, RobotState
 
@@ -66,9 +67,7 @@ def _look(frame: Frame, plan: Plan) -> None:
     plan.rolling = plan.watch.rolling_speed(frame)
     everybody = movers_of(frame)
     plan.own_movers, theirs = everybody[: len(frame.own)], everybody[len(frame.own) :].copy()
-    for limit in ("max_speed", "acceleration"):
-        of_all = theirs.view(MOVER)[limit]
-        np.minimum(of_all, plan.tactics.quickest, out=of_all)
+    _limit(theirs, plan.tactics.quickest)
     plan.their_movers = theirs
     slide, roll = frame.ball_model.slide_deceleration, frame.ball_model.roll_deceleration
     plan.meetings = meetings(
@@ -78,6 +77,16 @@ def _look(frame: Frame, plan: Plan) -> None:
     ours, rest = times[: len(frame.own)], times[len(frame.own) :]
     plan.own_times = {robot.id: time for robot, time in zip(frame.own, ours, strict=True)}
     plan.their_times = {robot.id: time for robot, time in zip(frame.opponents, rest, strict=True)}
+
+
+@compiled_lean
+def _limit(movers_: FloatArray, most: float) -> None:
+    """Let robots be no faster, and speed up no faster, than ``most``."""
+    movers = movers_.view(MOVER)
+    for i in range(len(movers)):
+        mover: Mover = movers[i, 0]
+        mover.max_speed = min(mover.max_speed, most)
+        mover.acceleration = min(mover.acceleration, most)
 
 
 def _judge_possession(frame: Frame, team: TeamStore, plan: Plan) -> None:
@@ -116,18 +125,19 @@ def _attacker(frame: Frame, team: TeamStore, plan: Plan) -> int | None:
         return team.attacker
     spot = game.placement if not game.in_play and game.placement is not None and not placing else None
     meant = team.receiver if pass_under_way(frame, team) else None
-    candidates, rows = [], {robot.id: row for row, robot in enumerate(frame.own)}
+    candidates: list[float] = []
+    rows = {robot.id: row for row, robot in enumerate(frame.own)}
     for robot in frame.own:
         if robot.id not in plan.players or robot.id == team.kicker:
-            candidates.append(_NO_CANDIDATE)
+            candidates += _NO_CANDIDATE
         elif spot is not None:
             # Nobody has the ball yet, nor is beyond it.
             time = distance(spot, robot.position) / 2.0
-            candidates.append(Candidate(time, ball.x, False))
+            candidates += Candidate(time, ball.x, False)
         else:
-            candidates.append(Candidate(plan.own_times[robot.id], robot.x, has_ball(robot, ball)))
+            candidates += Candidate(plan.own_times[robot.id], robot.x, has_ball(robot, ball))
     row = choose_attacker(
-        np.array(candidates, dtype=np.float64),
+        np.array(candidates, dtype=np.float64).reshape(-1, len(Candidate._fields)),
         ball.x,
         ball.speed,
         NOBODY if meant is None else rows.get(meant, NOBODY),

@@ -21,6 +21,7 @@ from robobt.learning.envs import (
     find_task,
     make_task,
 )
+from robobt.learning.envs.make import task_file
 from robobt.learning.envs.soccer.task import SoccerTask
 from robobt.learning.training.settings import SettingsError, load_settings
 from robobt.plays.sources import PythonFileError
@@ -188,6 +189,21 @@ def test_settings_of_a_shipped_task_may_have_more_numbers(kind: Any) -> None:
         ("def ends", "def oppose(self, c): c[:] = np.nan\n\n    def ends", r"Middle\.oppose: a command"),
         ('balls["x"] = 3.0', "rows[:, 99] = 3.0", r"own\.py:\d+: Middle\.sample: IndexError"),
         ('balls["x"] = 3.0', 'balls["x"] = np.nan', r"Middle\.sample: a start is not finite"),
+        (
+            "def ends",
+            "def begin(self, s, w): self.nothing\n\n    def ends",
+            r"own\.py:\d+: Middle\.begin: Attr",
+        ),
+        (
+            "tick.goal != 0",
+            'tick.now.me["x"]',
+            r"Middle\.ends: returns float64 for other ends, not truth values",
+        ),
+        (
+            "def ends(self, tick):",
+            "def ends(self, tick):\n        tick.now.me['x'] += 1.0",
+            r"Middle\.ends: .*read-only",
+        ),
         ("return rows", "return rows[:1]", r"Middle\.sample: returns starts of the shape \(1, 10\), not"),
         ("return rows", "pass", r"Middle\.sample: returns starts of the shape \(\), not"),
     ],
@@ -239,6 +255,13 @@ def test_a_file_without_the_task_is_told(own: str) -> None:
             r"learners must be of the robots 0, not \(5",
         ),
         ("(TaskSettings)", "", "own.py:.* Middle: Settings must be a subclass of TaskSettings"),
+        (
+            "observation = TO",
+            "robots, learners = 2, (1,)\n    observation = TO",
+            r"learners must be \(0,\), not \(1",
+        ),
+        ("time_limit: int = 40", "time_limit: int = 0", "decide_every and time_limit must be at least 1"),
+        ('"far", 2.0', '"far", 0.0', "the scale of the entry 'x' must be above 0, not 0.0"),
     ],
 )
 def test_what_is_wrong_in_a_declaration_is_told_before_anything_is_trained(
@@ -252,3 +275,16 @@ def test_what_is_wrong_in_a_declaration_is_told_before_anything_is_trained(
 def test_a_name_that_is_taken_is_told() -> None:
     with pytest.raises(ValueError, match="'duel' is one of robobt's"):
         TASKS.register("duel")(type("Duel", (GoToBallTask,), {}))
+
+
+def test_a_preset_of_another_task_is_told(own: str) -> None:
+    Path("other.yaml").write_text("extends: fast\ntask: shoot\n")
+    with pytest.raises(SettingsError, match=r"other\.yaml: task: is shoot, where own\.py:Middle is trained"):
+        load_settings(own, "other.yaml")
+
+
+def test_the_code_of_a_task_is_what_this_process_runs_though_its_file_is_edited(own: str) -> None:
+    environment = load_settings(own).environment
+    before = task_file(environment)[1]
+    Path("own.py").write_text(OWN.replace("< 0.3", "< 0.4"))
+    assert task_file(environment)[1] == before != ""
