@@ -364,7 +364,7 @@ class ArenaTask:
         rows = given.reshape(len(filled), self.action.size)
         if not fill_commands(rows, self._scaling, *self._kind, kick, filled):
             raise ValueError("an action is not finite")
-        self._commands[:, self.learners] = filled.reshape(self.n, each, -1)
+        self._commands[:, self.learners] = filled.reshape(self.n, each, filled.shape[-1])
         rewards = np.zeros(self.n)
         ends = Ends.none(self.n)
         last = self.settings.decide_every - 1
