@@ -28,6 +28,7 @@ COMMANDS = {
     "chips": "chips:chips",
     "clock": "clock:clock",
     "league": "league:league",
+    "measurements": "measurements:measurements",
 }
 """The benchmarks by name, each a function of a module here."""
 
