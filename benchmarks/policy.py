@@ -22,6 +22,9 @@ from robobt.world.command import RobotCommand
 from robobt.world.field import DIVISION_B
 from robobt.world.state import BallState, Frame, RobotState
 
+PERIOD = 0.03
+"""Time between two ticks, that of the shipped policies [s]."""
+
 
 def bench_policy(
     model: str | Path = "go_to_ball_ddpg", rounds: int = 25, calls: int = 400
@@ -43,13 +46,14 @@ def bench_policy(
         ModelError: the model cannot be used, or is not a TorchScript file.
     """
     policy = load_policy(model)
+    ticks = (rounds + 1) * calls
     cases: dict[str, Callable[[], object]] = {
         "module_us": bare_module(policy),
-        "leaf_us": _ticking(LearnedSkill(model=str(model))),
+        "leaf_us": _ticking(LearnedSkill(model=str(model)), ticks),
     }
     own: dict[str, Callable[..., Behaviour]] = {"GoToBall": GoToBall, "Shoot": Shoot}
     if policy.card.skill in own:
-        cases["skill_us"] = _ticking(own[policy.card.skill](policy=str(model)))
+        cases["skill_us"] = _ticking(own[policy.card.skill](policy=str(model)), ticks)
     us = medians(cases, rounds, calls)
     figures = {"leaf_to_module_ratio": us["leaf_us"] / us["module_us"]}
     if "skill_us" in us:
@@ -57,16 +61,22 @@ def bench_policy(
     return {**figures, **us}
 
 
-def _ticking(leaf: Behaviour) -> Callable[[], object]:
-    """Ticks of a leaf on a frame in which the robot has the ball to get, or in its mouth."""
+def _ticking(leaf: Behaviour, ticks: int) -> Callable[[], object]:
+    """Return a tick of a leaf whose robot has the ball to get, or in its mouth: at most ``ticks`` calls.
+
+    Each is a frame of its own, a period later: at the same instant a leaf would keep its last command
+    instead of asking its network.
+    """
     far = not isinstance(leaf, Shoot)
     me = RobotState(0, -1.0, 0.5, 0.4, 0.3, -0.2, 0.1, ball_contact=not far)
     ball = BallState(1.0, -0.5) if far else BallState(-1.0 + 0.1 * np.cos(0.4), 0.5 + 0.1 * np.sin(0.4))
-    store = Store(Frame(0.0, DIVISION_B, ball, (me,), period=0.03), me)
+    frames = iter([Frame(PERIOD * n, DIVISION_B, ball, (me,), period=PERIOD) for n in range(ticks)])
+    store = Store(Frame(0.0, DIVISION_B, ball, (me,), period=PERIOD), me)
     runner = TreeRunner(leaf, store, on_error="raise")
     tick = runner.tick
 
     def once() -> None:
+        store.frame = next(frames)
         store.command = RobotCommand()
         tick()
 
