@@ -28,19 +28,30 @@ def export(
     btlog: Annotated[
         bool, typer.Option("--btlog", help="As the .btlog file of BehaviorTree.CPP's FileLogger2.")
     ] = False,
+    mcap: Annotated[
+        bool, typer.Option("--mcap", help="As an MCAP file of the whole match, for Foxglove and Rerun.")
+    ] = False,
     robot: _Robot = None,
     out: Annotated[
         Path | None,
-        typer.Option("--out", help="The file to write; by default beside the recording, robot in its name."),
+        typer.Option("--out", help="The file to write; by default beside the recording."),
     ] = None,
 ) -> None:
-    """Write what a robot's tree did in a form that other tools read."""
+    """Write a recording in a form that other tools read."""
     from robobt.match.recording import load_recording
     from robobt.match.recording.btlog import write_btlog
 
-    if not btlog:
-        raise typer.BadParameter("name the format to write: --btlog")
+    if btlog == mcap:
+        raise typer.BadParameter("name one format to write: --btlog or --mcap")
     loaded = load_recording(recording)
+    if mcap:
+        from robobt.match.recording.mcap import write_mcap
+
+        target = recording.with_name(f"{recording.name.removesuffix(RECORDING)}.mcap") if out is None else out
+        _spare(recording, target)
+        make_folders({"--out": target})
+        say(f"MCAP file: {write_mcap(loaded, target)}")
+        return
     who = recorded_robot(loaded, robot)
     stem = recording.name.removesuffix(RECORDING)
     target = recording.with_name(f"{stem}-{who.team.value}-{who.number}.btlog") if out is None else out

@@ -7,11 +7,13 @@ from importlib.util import find_spec
 from robobt.config.errors import RobobtError
 
 EXTRAS = {
+    "foxglove_schemas_protobuf": "mcap",
     "gymnasium": "learn",
     "tensorboard": "learn",
     "PIL": "plots",
     "google": "league",
     "matplotlib": "plots",
+    "mcap_protobuf": "mcap",
     "onnx": "onnx",
     "onnxruntime": "onnx",
     "optuna": "sweep",
@@ -26,7 +28,9 @@ EXTRAS = {
 """By the name under which a package is imported, the extra that brings it."""
 
 _DISTRIBUTIONS = {
+    "foxglove_schemas_protobuf": "foxglove-schemas-protobuf",
     "google": "protobuf",
+    "mcap_protobuf": "mcap-protobuf-support",
     "PIL": "pillow",
     "sklearn": "scikit-learn",
     "stable_baselines3": "stable-baselines3",

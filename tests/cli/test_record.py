@@ -34,6 +34,15 @@ def test_a_log_is_written_beside_the_recording_and_a_robot_without_a_tree_is_ref
     assert refused.exit_code == 2
 
 
+def test_an_mcap_file_is_written_beside_the_recording(recording: Path) -> None:
+    done = CliRunner().invoke(app, ["record", "export", "--mcap", str(recording)])
+    assert done.exit_code == 0, done.stderr
+    assert (recording.parent / "made.mcap").read_bytes().startswith(b"\x89MCAP0\r\n")
+    assert CliRunner().invoke(app, ["record", "export", str(recording)]).exit_code == 2
+    same = ["record", "export", "--mcap", str(recording), "--out", str(recording)]
+    assert CliRunner().invoke(app, same).exit_code == 2
+
+
 def test_a_tick_that_cannot_be_a_case_is_one_line_on_stderr(recording: Path) -> None:
     out = recording.parent / "case.yaml"
     given = ["record", "case", str(recording), "--tick", "3", "--robot", "blue 1", "--out", str(out)]

@@ -35,7 +35,9 @@ def light(*command: str) -> subprocess.CompletedProcess[str]:
 def test_every_package_is_brought_by_the_extra_that_is_named() -> None:
     extras = PROJECT["optional-dependencies"]
     names = {
+        "foxglove_schemas_protobuf": "foxglove-schemas-protobuf",
         "google": "protobuf",
+        "mcap_protobuf": "mcap-protobuf-support",
         "PIL": "pillow",
         "sklearn": "scikit-learn",
         "stable_baselines3": "stable-baselines3",
