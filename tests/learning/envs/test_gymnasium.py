@@ -212,6 +212,13 @@ def test_registering_does_not_load_the_learners() -> None:
     assert printed.split() == ["False", "False"]
 
 
+@pytest.mark.integration
+def test_gymnasium_makes_one_by_module_and_id_without_an_import() -> None:
+    code = "import gymnasium; print(gymnasium.make('robobt.learning:GoToBall-v0').reset(seed=0)[0].shape)"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout == "(6,)\n"
+
+
 @pytest.mark.parametrize(
     ("action", "said"),
     [
