@@ -66,6 +66,12 @@ def models(
         list[Path] | None,
         typer.Option("--path", help="A further folder of models, or a model file; may be given often."),
     ] = None,
+    out: Annotated[
+        Path | None,
+        typer.Option(
+            "--out", help="Write the model's card as a Markdown page with the metadata of model hubs."
+        ),
+    ] = None,
     as_json: Json = False,
 ) -> None:
     """List the models: those that ship, those in the working folder and in ROBOBT_MODELS, and further ones.
@@ -79,6 +85,11 @@ def models(
     from robobt.models.file import ModelError, read_model_file
     from robobt.models.find import find_model, list_models, model_folders
 
+    if out is not None:
+        if name is None:
+            raise typer.BadParameter("name the model whose card is to be written", param_hint="--out")
+        _write_hub_page(read_model_file(find_model(name)), out)
+        return
     if name is not None:
         paths = [find_model(name)]
     else:
@@ -107,6 +118,18 @@ def models(
         warn(problem)
     if problems:
         raise typer.Exit(1)
+
+
+def _write_hub_page(file: ModelFile, out: Path) -> None:
+    from robobt.config.atomic import write_atomically
+    from robobt.config.resources import models_folder
+    from robobt.models.hub_card import hub_page
+
+    make_folders({"--out": out})
+    # Those that ship have robobt's licence; of others nobody has said it.
+    shipped = file.path.resolve().parent == models_folder().resolve()
+    write_atomically(out, hub_page(file, "mit" if shipped else ""))
+    say(f"Card: {out}" + ("" if shipped else "; add the model's license to its metadata"))
 
 
 def _data(file: ModelFile) -> dict[str, object]:
