@@ -1,4 +1,4 @@
-"""Pages of the site that are made: tutorials from their notebooks, the reference from the package."""
+"""Parts of the site that are made: tutorials, reference and llms.txt."""
 
 from __future__ import annotations
 
@@ -34,9 +34,23 @@ def on_files(files: Files, config: MkDocsConfig) -> Files:
         ("python", python_names),
     ):
         pages[f"reference/{name}.md"] = make()
+    pages["llms.txt"] = llms_txt(config.site_name, config.site_description, config.nav)
     for name, content in pages.items():
         files.append(File.generated(config, name, content=content))
     return files
+
+
+def llms_txt(name: str, description: str, nav: list[dict[str, Any]]) -> str:
+    """Write the contents of the site for language models, as https://llmstxt.org describes it."""
+    sections: dict[str, list[str]] = {}
+    for entry in nav:
+        for title, inside in entry.items():
+            single = isinstance(inside, str)
+            lines = sections.setdefault("Start here" if single else title, [])
+            for page in [{title: inside}] if single else inside:
+                lines += [f"- [{about}]({path.removesuffix('.md')}.html)" for about, path in page.items()]
+    parts = [f"## {title}\n\n" + "\n".join(lines) + "\n" for title, lines in sections.items()]
+    return "\n".join([f"# {name}\n", f"> {description}\n", *parts])
 
 
 def tutorial(path: Path) -> str:

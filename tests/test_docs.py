@@ -16,6 +16,7 @@ from typer.main import get_command
 from typer.testing import CliRunner
 
 import robobt
+from mkdocs_hooks import llms_txt
 from robobt.cli import app
 from robobt.config.extras import MissingExtraError
 from robobt.config.yaml import read_yaml
@@ -133,6 +134,19 @@ def test_every_page_is_in_the_sites_contents() -> None:
     written = {path.name for path in (ROOT / "docs").glob("*.md")}
     written |= {f"tutorials/{path.stem}.md" for path in (ROOT / "examples").glob("*.py")}
     assert {page for page in named if not page.startswith("reference/")} == written
+
+
+def test_language_models_are_told_of_every_page() -> None:
+    site = read_yaml(ROOT / "mkdocs.yml")
+    text = llms_txt(site["site_name"], site["site_description"], site["nav"])
+    assert text.startswith(
+        f"# robobt\n\n> {site['site_description']}\n\n## Start here\n\n- [Start here](index.html)\n"
+    )
+    linked = re.findall(r"^- \[[^\]]+\]\((\S+)\.html\)$", text, re.MULTILINE)
+    assert sorted(linked) == sorted(page.removesuffix(".md") for page in pages(site["nav"]))
+    assert [line for line in text.splitlines() if line.startswith("## ")][1:] == [
+        f"## {title}" for entry in site["nav"] for title, inside in entry.items() if isinstance(inside, list)
+    ]
 
 
 def test_the_citation_is_of_this_version() -> None:
