@@ -7,7 +7,8 @@ Beside it lie type stubs for editors and type checkers. Run as a script it does
 the same in place.
 
 A wheel and an sdist say from which commit they were made (``robobt/commit.txt``), for the cards of
-models that are trained with them.
+models that are trained with them. A wheel carries the models, but not the shots that some of them
+learned from.
 """
 
 from __future__ import annotations
@@ -58,6 +59,10 @@ class MessagesHook(BuildHookInterface):  # type: ignore[type-arg]
     def initialize(self, version: str, build_data: dict[str, Any]) -> None:
         """See hatchling."""
         build_data["artifacts"] += [f"/{path}" for path in compile_messages(Path(self.root))]
+        if self.target_name == "wheel" and version != "editable":
+            for path in sorted((Path(self.root) / "models").iterdir()):
+                if path.suffix != ".parquet":
+                    build_data["force_include"][str(path)] = f"robobt/_data/models/{path.name}"
         package = Path(self.root) / "robobt"
         commit = runpy.run_path(str(package / "config" / "commit.py"))["commit_of"](package)
         # An editable installation asks git itself, an sdist has the file already.

@@ -120,6 +120,8 @@ def test_it_carries_types_scenarios_and_models(unpacked: Path) -> None:
     assert list((unpacked / "robobt" / "_data" / "scenarios").glob("*.yaml"))
     assert (unpacked / "robobt" / "_data" / "models" / "README.md").exists()
     assert not (unpacked / "tests").exists()
+    for needless in ("*.parquet", "*.proto"):
+        assert not list(unpacked.rglob(needless))
 
 
 @pytest.mark.integration

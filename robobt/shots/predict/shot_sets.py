@@ -44,7 +44,7 @@ def load_shot_sets(data: str | Path | None = None, seed: int = 0) -> ShotSets:
             author's weights if they are there; or a single file, whose column
             ``early_stop_split`` says which shots are to test on, and else 201 of
             743 are drawn. None for shots collected here: ``out/paper_shots.parquet``,
-            then those that ship with robobt.
+            then those in a clone of the repository.
         seed: of that draw.
 
     Raises:
@@ -81,7 +81,8 @@ def _own_shots() -> Path:
                 return folder / name
     raise ShotDataError(
         "there are no shots: collect some with 'robobt collect shots --protocol paper "
-        "--out out/paper_shots.parquet', or name them with --data"
+        "--out out/paper_shots.parquet', or name them with --data; a clone of the repository has "
+        "models/paper_shots.parquet"
     )
 
 
