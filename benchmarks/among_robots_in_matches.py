@@ -25,7 +25,7 @@ from benchmarks.transfer import SEED, WORLDS
 from robobt.learning.envs import GoToBallAmongRobotsSettings, make_task
 from robobt.learning.envs.go_to_ball.task import TOUCHING
 from robobt.learning.opponents.patrols import TRAITS, Patrols
-from robobt.match import Match, Scenario
+from robobt.match import MatchLoop, Scenario
 from robobt.match.loop import WorldFactory
 from robobt.plays.base import PLAYS
 from robobt.sim.records import COMMAND, size
@@ -179,7 +179,7 @@ def scenario(simulator: object, policy: str, start: dict[str, float]) -> Scenari
 
 def played(match: Scenario, seed: int, factory: WorldFactory) -> tuple[float, float, float]:
     """Return whether the ball was reached, whether somebody was touched first, and when it ended [s]."""
-    with Match(match, seed, factory) as playing:
+    with MatchLoop(match, seed, factory) as playing:
         while playing.tick():
             truth = playing.world.truth()
             for me in truth.own:

@@ -11,7 +11,7 @@ import typer
 from robobt.cli.common import Bundled, Json, Progress, print_json, say
 from robobt.engines.cluster import RayEngine
 from robobt.engines.run import running_on
-from robobt.match import load_scenario, run_trials
+from robobt.match import load_scenario, run_trials_in
 from robobt.worlds import sim_world
 
 
@@ -42,7 +42,9 @@ def engines(
 
     def turn() -> tuple[float, float]:
         ends = [perf_counter()]
-        run = run_trials(loaded, sim_world, trials, workers, on_result=lambda _: ends.append(perf_counter()))
+        run = run_trials_in(
+            loaded, sim_world, trials, workers, on_result=lambda _: ends.append(perf_counter())
+        )
         traces.add(run.summary().trace)
         progress.advance()
         started = ends[trials // 10]

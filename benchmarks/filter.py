@@ -15,7 +15,7 @@ from robobt.league.estimate.filter import VisionFilter
 from robobt.league.serve.cameras import Cameras
 from robobt.league.wire.vision import CameraFrame
 from robobt.match import load_scenario
-from robobt.match.loop import Match
+from robobt.match.loop import MatchLoop
 from robobt.match.scenario.scenario import Scenario
 from robobt.sim import SimSettings, SimWorld, settings_from
 from robobt.sim.settings import RealismSettings, realism_level
@@ -173,7 +173,7 @@ def _play(
             self._watcher.ball_was_placed()
             super().place_ball(x, y)
 
-    Match(scenario.model_copy(update={"period": PERIOD}), seed, Watched).play()
+    MatchLoop(scenario.model_copy(update={"period": PERIOD}), seed, Watched).play()
     return _rms(errors)
 
 

@@ -26,7 +26,7 @@ from robobt.league.wire.endpoints import VISION_GROUP, Endpoint, Endpoints
 from robobt.league.wire.sockets import LOOPBACK, Receiver
 from robobt.league.world import LeagueWorld
 from robobt.match import load_scenario
-from robobt.match.loop import Match
+from robobt.match.loop import MatchLoop
 from robobt.match.scenario.scenario import Scenario
 from robobt.sim import settings_from
 from robobt.world.state import Frame
@@ -177,7 +177,7 @@ def _play(pipe: Pipe, scenario: Scenario, endpoints: Endpoints, simulator: str, 
     connection = Connection.model_validate({"simulator": simulator, "endpoints": endpoints})
     world = _CountingWorld(scenario.field, robots, settings, 1 / RATE, connection)
     played = scenario.lasting(seconds + 60.0).model_copy(update={"period": 1 / RATE})
-    match = Match(played, scenario.seed, lambda _: world)
+    match = MatchLoop(played, scenario.seed, lambda _: world)
     pipe.send(True)
     began = time.monotonic()
     ticks = 0

@@ -19,7 +19,7 @@ from robobt.cli.common import Bundled, Imports, Json, Seed, errors, import_files
 from robobt.live.server import Server
 from robobt.live.session import LATE, Live
 from robobt.match import load_scenario
-from robobt.match.loop import Match, WorldFactory
+from robobt.match.loop import MatchLoop, WorldFactory
 from robobt.match.scenario.scenario import Scenario
 from robobt.worlds import sim_world
 
@@ -109,13 +109,13 @@ def bench_live(
     """
     seed = scenario.seed if seed is None else seed
     played = scenario.lasting(seconds + 5.0)
-    first = Match(scenario.lasting(3.0), seed, world_factory)
+    first = MatchLoop(scenario.lasting(3.0), seed, world_factory)
     first.be_ready()
     first.play()
     period = scenario.period
     with ExitStack() as stack:
-        alone = stack.enter_context(Match(played, seed, world_factory))
-        shown = stack.enter_context(Match(played, seed, world_factory))
+        alone = stack.enter_context(MatchLoop(played, seed, world_factory))
+        shown = stack.enter_context(MatchLoop(played, seed, world_factory))
         server = stack.enter_context(Server())
         # The pace is kept here.
         live = Live(server, sleep=lambda _: None)

@@ -12,7 +12,7 @@ from rich.markup import escape
 
 from robobt.cli.common import Bundled, Imports, Json, Seed, errors, import_files, print_json, say
 from robobt.match import load_scenario
-from robobt.match.loop import Match, WorldFactory
+from robobt.match.loop import MatchLoop, WorldFactory
 from robobt.match.referee.events import Decision
 from robobt.match.refereeing import MatchReferee, own_referee
 from robobt.match.scenario.scenario import Scenario
@@ -87,11 +87,11 @@ def bench_match(
         path = Path(folder) / "bench.robobt.arrows"
         played = scenario.lasting(seconds)
         # Compiled code and policies are loaded when they are first needed, as by the first shot.
-        Match(played, seed, world_factory, path).play()
-        recorded = Match(played, seed, world_factory, path)
+        MatchLoop(played, seed, world_factory, path).play()
+        recorded = MatchLoop(played, seed, world_factory, path)
         timed = _TimedReferee()
-        bare = Match(played, seed, world_factory, referee=timed)
-        stock = Match(played, seed, world_factory)
+        bare = MatchLoop(played, seed, world_factory, referee=timed)
+        stock = MatchLoop(played, seed, world_factory)
         for player in stock.players:
             player.runner.tick_by_py_trees()
         matches = (recorded, bare, stock)

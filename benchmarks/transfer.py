@@ -19,7 +19,7 @@ import argparse
 from collections.abc import Mapping
 
 from robobt.cli.scenario_options import with_teams
-from robobt.match import MatchResult, load_scenario, run_trials
+from robobt.match import MatchResult, load_scenario, run_trials_in
 from robobt.match.results.compare import Difference, compare
 from robobt.match.scenario.changes import changed
 from robobt.match.scenario.scenario import Scenario
@@ -62,7 +62,7 @@ def main(words: list[str] | None = None) -> None:
     for name, scenario in worlds.items():
         results = {
             label: list(
-                run_trials(
+                run_trials_in(
                     with_teams(scenario, blue, yellow), world_from(given.address), given.trials, seed=SEED
                 ).results
             )

@@ -13,7 +13,7 @@ from typing import TypedDict
 
 from robobt.match.loop import WorldFactory
 from robobt.match.results.results import MatchResult, Rate
-from robobt.match.runner import run_trials
+from robobt.match.runner import run_trials_in
 from robobt.match.scenario.robots import RobotSetup
 from robobt.match.scenario.scenario import Scenario, load_scenario
 from robobt.statistics import mcnemar
@@ -193,7 +193,7 @@ def deployed(
         for name in attackers:
             scenario = deployed_scenario(situation, name)
             kept = None if out is None else out / f"{_file_name(situation, name)}.jsonl"
-            results = run_trials(scenario, world, shots, workers, seed, kept, on_result=played).results
+            results = run_trials_in(scenario, world, shots, workers, seed, kept, on_result=played).results
             first = results if first is None else first
             published = PAPER[situation.speed].get(name) if not situation.defenders else None
             match = (name, situation.goalkeeper, situation.starts, situation.defenders)

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from paper.deployed import Situation, deployed_scenario
 from robobt.config.figures import new_figure, save_figure
-from robobt.match.loop import Match, WorldFactory
+from robobt.match.loop import MatchLoop, WorldFactory
 from robobt.match.runner import trial_seed
 from robobt.skills.aim.raters.expected_goal import ExpectedGoal
 from robobt.skills.aim.raters.goal_line import goal_candidates
@@ -25,7 +25,7 @@ def judged_goal_line(situation: Situation, seed: int, path: Path, world: WorldFa
         RuntimeError: it takes no shot in the first of its trials.
     """
     scenario = deployed_scenario(situation, "attack_expected")
-    with Match(scenario, trial_seed(seed, 0), world) as match:
+    with MatchLoop(scenario, trial_seed(seed, 0), world) as match:
         store = match.players[0].store
         while match.tick():
             if store.command.kick_speed > 0.0:

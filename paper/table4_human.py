@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 from paper.table4_starts import SHOOTER
 from robobt.live.session import LOOK, Live
-from robobt.match.loop import Match
+from robobt.match.loop import MatchLoop
 from robobt.world.game import Team
 from robobt.world.state import RobotId
 
@@ -24,7 +24,7 @@ class HumanRuns:
     def __init__(self, live: Live, countdown: float = COUNTDOWN, look: float = LOOK) -> None:
         self._live, self._countdown, self._look = live, countdown, look
 
-    def __call__(self, match: Match) -> Callable[[], bool]:
+    def __call__(self, match: MatchLoop) -> Callable[[], bool]:
         """Show a match and count down; return what plays its next tick."""
         team, _, number = SHOOTER.partition(" ")
         self._live.begin(match).take(RobotId(Team(team), int(number)))

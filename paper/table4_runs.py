@@ -14,7 +14,7 @@ from paper.table4_starts import SHOOTER, gap, minimum_times
 from robobt.config.errors import RobobtError
 from robobt.engines.run import run_tasks
 from robobt.engines.work import Work
-from robobt.match.loop import Match, WorldFactory
+from robobt.match.loop import MatchLoop, WorldFactory
 from robobt.match.results.file import TrialsFile
 from robobt.match.runner import RunError, trial_seed
 from robobt.match.scenario.scenario import Scenario
@@ -22,7 +22,7 @@ from robobt.sim.settings import settings_from
 from robobt.skills.ball.go_to_ball import HANDOVER_DISTANCE
 from robobt.worlds import sim_world
 
-Show = Callable[[Match], Callable[[], bool]]
+Show = Callable[[MatchLoop], Callable[[], bool]]
 """Shows a match to somebody and returns what plays its next tick, False when it is over."""
 
 _GOAL = "goal_blue"
@@ -172,7 +172,7 @@ def play_attempt(
 ) -> Attempt:
     """Play one run to its end, as fast as can be or as it is shown."""
     approach: float | None = None
-    with Match(scenario, seed, world) as match:
+    with MatchLoop(scenario, seed, world) as match:
         before = match.world.truth()
         minimum: dict[str, float] | None = None
         if before.own:

@@ -12,11 +12,10 @@ from pydantic import ValidationError
 
 from robobt.config.errors import message_of
 from robobt.config.validation import first_problem
-from robobt.match import loop, runner
-from robobt.match.loop import WorldFactory
+from robobt.match.loop import MatchLoop, WorldFactory
 from robobt.match.refereeing import RefereeFactory, own_referee
 from robobt.match.results.results import MatchResult
-from robobt.match.runner import Run
+from robobt.match.runner import Run, run_trials_in
 from robobt.match.scenario.scenario import Scenario
 from robobt.sim import SimSettings, SimWorld, settings_from
 from robobt.world.prediction import PredictedWorld
@@ -88,7 +87,7 @@ def world_from(address: str) -> WorldFactory:
     return LeagueFactory(address, scenario_settings)
 
 
-class Match(loop.Match):
+class Match(MatchLoop):
     """A match that is played tick by tick, in the built-in simulator unless another world is given.
 
     Args:
@@ -98,7 +97,7 @@ class Match(loop.Match):
         record: file to record the match to; its name ends in ``.robobt.arrows``.
         referee: makes the referee; by default the scenario's own. It is closed with the match.
 
-    Attributes and errors are those of :class:`robobt.match.loop.Match`.
+    Attributes and errors are those of :class:`robobt.match.loop.MatchLoop`.
     """
 
     def __init__(
@@ -137,8 +136,7 @@ def play_match(
         ScenarioError: the scenario does not fit the world, or its objects find no place.
         OSError: the recording cannot be written.
     """
-    seed = scenario.seed if seed is None else seed
-    return loop.play_match(scenario, seed, _factory(world), record, referee=referee)
+    return Match(scenario, seed, world, record, referee).play()
 
 
 def run_trials(
@@ -155,7 +153,7 @@ def run_trials(
 ) -> Run:
     """Play a scenario many times.
 
-    Errors are those of :func:`robobt.match.runner.run_trials`.
+    Errors are those of :func:`robobt.match.runner.run_trials_in`.
 
     Args:
         scenario: what is played.
@@ -172,7 +170,7 @@ def run_trials(
         The results, and their summary.
     """
     factory = _factory(world)
-    return runner.run_trials(scenario, factory, trials, workers, seed, out, record, on_result, referee)
+    return run_trials_in(scenario, factory, trials, workers, seed, out, record, on_result, referee)
 
 
 def _factory(world: str | WorldFactory) -> WorldFactory:

@@ -141,7 +141,7 @@ def _played(
     out: Path | None,
     advance: Callable[[], object],
 ) -> list[MatchResult]:
-    from robobt.match import run_trials
+    from robobt.match import run_trials_in
     from robobt.worlds import SIM, scenario_settings
 
     def on_result(_: MatchResult) -> None:
@@ -152,7 +152,7 @@ def _played(
         raise typer.BadParameter("must be 1 to play over the network", param_hint="--workers")
     processes = workers or (min(cores(), -(-count // 4)) if address == SIM else 1)
     with world_of(address) as factory:
-        run = run_trials(scenario, factory, count, processes, seed, out, {}, on_result)
+        run = run_trials_in(scenario, factory, count, processes, seed, out, {}, on_result)
     if run.interrupted:
         goes_on = "without --out nothing is kept" if out is None else "the same command goes on with it"
         warn(f"stopped; {goes_on}")

@@ -94,7 +94,7 @@ def live(
     The page shows all that a replay does, and can pause, step, slow down, go back up to five minutes and
     save what was seen. Ctrl-C ends it.
     """
-    from robobt.match import Match
+    from robobt.match import MatchLoop
     from robobt.match.runner import trial_seed
 
     with page.server() as server:
@@ -104,10 +104,10 @@ def live(
         start = loaded.seed if seed is None else seed
         records = [record]
 
-        def make(trial: int) -> Match:
+        def make(trial: int) -> MatchLoop:
             seed = trial_seed(start, trial)
             recorded = records.pop() if records else None
-            return Match(loaded, seed, factory, recorded, trial, referees, layer_names(record_layers))
+            return MatchLoop(loaded, seed, factory, recorded, trial, referees, layer_names(record_layers))
 
         with world_of(world) as factory:
             Live(server, speed, paused).play_on(make)

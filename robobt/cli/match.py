@@ -212,7 +212,7 @@ def match(
 
     Exit code 3 when a robot's tree failed in some tick, though all trials were played.
     """
-    from robobt.match import Match, run_trials
+    from robobt.match import MatchLoop, run_trials_in
     from robobt.match.runner import Recorded
     from robobt.worlds import SIM, scenario_settings
 
@@ -227,13 +227,13 @@ def match(
         as_page = replay is not None and replay.name.lower().endswith(PAGES)
         recording = Path(folder) / f"trial{RECORDING}" if as_page else replay
         with ExitStack() as stack:
-            play: Callable[[Match], MatchResult] = Match.play
+            play: Callable[[MatchLoop], MatchResult] = MatchLoop.play
             if live:
                 from robobt.live.session import Live
 
                 play = Live(stack.enter_context(page.server())).conduct
             progress = stack.enter_context(Progress(loaded.name, count))
-            played = run_trials(
+            played = run_trials_in(
                 loaded,
                 stack.enter_context(world_of(where.world, where.publish)),
                 count,

@@ -27,7 +27,7 @@ from robobt.live.messages import (
     robot_of,
 )
 from robobt.live.server import Server
-from robobt.match.loop import Match
+from robobt.match.loop import MatchLoop
 from robobt.match.steering import Steering, SteeringError
 from robobt.models.find import paths_in
 from robobt.plays import PLAYS
@@ -38,7 +38,7 @@ from robobt.world.state import RobotId
 class Hands:
     """Does to one match what messages ask for, and tells the viewers where that cannot be done."""
 
-    def __init__(self, match: Match, server: Server, clock: Callable[[], float]) -> None:
+    def __init__(self, match: MatchLoop, server: Server, clock: Callable[[], float]) -> None:
         self._match, self._server, self._clock = match, server, clock
         self._steering = Steering(match)
         self._grip = Grip()

@@ -14,7 +14,7 @@ from robobt.live.hands import Hands
 from robobt.live.messages import Act, Pause, Reset, Speed, Step
 from robobt.live.server import Server
 from robobt.live.stream import Stream
-from robobt.match.loop import Match
+from robobt.match.loop import MatchLoop
 from robobt.match.recording.capture import Capture, CapturedTick
 from robobt.match.results.results import MatchResult
 from robobt.signals import check
@@ -72,7 +72,7 @@ class Live:
         self._attentive, self._period = True, 0.0
         self.ticks = self.late = 0
 
-    def play_on(self, make: Callable[[int], Match]) -> None:
+    def play_on(self, make: Callable[[int], MatchLoop]) -> None:
         """Play one match after the other as viewers ask for them, until :meth:`end`.
 
         ``make`` is given the trial, which tells the seed.
@@ -91,7 +91,7 @@ class Live:
         """End what is played and shown; may be called by any thread."""
         self._ended = True
 
-    def play(self, match: Match) -> bool:
+    def play(self, match: MatchLoop) -> bool:
         """Play a match; whether it came to its end, which a viewer may not have wanted to see.
 
         The match is left open.
@@ -101,7 +101,7 @@ class Live:
             pass
         return match.outcome is not None
 
-    def conduct(self, match: Match) -> MatchResult:
+    def conduct(self, match: MatchLoop) -> MatchResult:
         """Play a match to its end, show that for a moment, and return the result.
 
         Raises:
@@ -120,7 +120,7 @@ class Live:
         self.linger(match, LOOK)
         return result
 
-    def begin(self, match: Match) -> Hands:
+    def begin(self, match: MatchLoop) -> Hands:
         """Show a match, before its first tick, and return what viewers do to it."""
         match.be_ready()
         if self._capture is not None:
@@ -138,7 +138,7 @@ class Live:
         self._due = self._clock()
         return hands
 
-    def tick(self, match: Match) -> bool:
+    def tick(self, match: MatchLoop) -> bool:
         """Play one tick when it is due and viewers want it; False when it is over or not wanted."""
         # Whether anybody wants more than that it is played, which is rare: as little as can be is looked at.
         wanted = (
@@ -156,7 +156,7 @@ class Live:
         self._pace()
         return True
 
-    def count_down(self, match: Match, seconds: float) -> None:
+    def count_down(self, match: MatchLoop, seconds: float) -> None:
         """Show the start and count down once somebody is there to drive, from anew whenever nobody is."""
         assert self._hands is not None
         assert self._stream is not None
@@ -181,7 +181,7 @@ class Live:
         """Go on with the match although a viewer asked for another."""
         self._reset = None
 
-    def linger(self, match: Match, seconds: float) -> None:
+    def linger(self, match: MatchLoop, seconds: float) -> None:
         """Show a match that is over for a while."""
         end = self._clock() + seconds
         while self._clock() < end and not self._ended:
@@ -192,12 +192,12 @@ class Live:
         """Whether :meth:`end` was called."""
         return self._ended
 
-    def wait(self, match: Match) -> None:
+    def wait(self, match: MatchLoop) -> None:
         """Show a match that is over until a viewer asks for another."""
         while self._reset is None and not self._ended:
             self._idle(match)
 
-    def _attend(self, match: Match) -> bool:
+    def _attend(self, match: MatchLoop) -> bool:
         """Do what viewers want before the next tick; False where they want none of this match."""
         assert self._hands is not None
         while not self._server.inbox.empty():
@@ -213,14 +213,14 @@ class Live:
         self._attentive = self._controls.paused or self._hands.holding
         return True
 
-    def _idle(self, match: Match) -> None:
+    def _idle(self, match: MatchLoop) -> None:
         """Wait a moment for what viewers ask for."""
         check()
         with suppress(Empty):
             self._do(*self._server.inbox.get(timeout=_LOOK), match)
         self._due = self._clock()
 
-    def _show(self, match: Match) -> None:
+    def _show(self, match: MatchLoop) -> None:
         """Show the match as it is captured now."""
         capture = match.capture()
         if capture is not self._capture:
@@ -238,7 +238,7 @@ class Live:
             self._known = len(self._named)
             self._server.tell(layers=sorted(self._named))
 
-    def _do(self, act: Act, arrived: float, match: Match) -> None:
+    def _do(self, act: Act, arrived: float, match: MatchLoop) -> None:
         self._attentive = True
         if match.world.paced and isinstance(act, Pause | Step | Speed):
             self._server.say(

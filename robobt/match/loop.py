@@ -44,8 +44,8 @@ WorldFactory = Callable[[Scenario], World]
 """Makes the world a scenario is played in. Raises ``ScenarioError`` when the scenario does not fit it."""
 
 
-class Match(Closing):
-    """A match that is played tick by tick.
+class MatchLoop(Closing):
+    """A match in a world that is given, played tick by tick.
 
     Args:
         scenario: what is played.
@@ -301,15 +301,3 @@ class Match(Closing):
         for event in events:
             self._trace.event(f"{event.kind} {event.robot}")
             self._captured.note(event)
-
-
-def play_match(
-    scenario: Scenario,
-    seed: int,
-    world_factory: WorldFactory,
-    record: str | Path | None = None,
-    trial: int = 0,
-    referee: RefereeFactory = own_referee,
-) -> MatchResult:
-    """Play one match to its end and return the result; the arguments are as for :class:`Match`."""
-    return Match(scenario, seed, world_factory, record, trial, referee).play()

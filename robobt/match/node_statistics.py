@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from robobt.match.loop import Match, WorldFactory
+from robobt.match.loop import MatchLoop, WorldFactory
 from robobt.match.runner import trial_seed
 from robobt.match.scenario.scenario import Scenario
 from robobt.plays.files import rename_play
@@ -26,7 +26,7 @@ def node_statistics(
     Raises:
         ScenarioError: no robot plays it, or the scenario does not fit the world.
     """
-    match = Match(scenario, trial_seed(scenario.seed if seed is None else seed, 0), world_factory)
+    match = MatchLoop(scenario, trial_seed(scenario.seed if seed is None else seed, 0), world_factory)
     played = {robot: setup.play for robot, setup in scenario.robots}
     watched = {}
     for player in match.players:

@@ -34,7 +34,7 @@ from robobt import __version__
 from robobt.config.atomic import write_atomically
 from robobt.config.errors import RobobtError, message_of
 from robobt.config.validation import first_problem
-from robobt.match.loop import Match
+from robobt.match.loop import MatchLoop
 from robobt.match.recording import Recording, RecordingError
 from robobt.match.recording.reader import parse_recording
 from robobt.match.recording.stores import plain
@@ -248,7 +248,7 @@ def _play(recording: Recording, robot: RobotId, tick: int, folder: Path) -> Deci
     rename_files(scenario_data, lambda file: os.path.relpath(folder.resolve() / file))
     try:
         scenario = scenario_from(scenario_data, str(recording.path))
-        match = Match(scenario, header.seed, lambda _: _RecordedWorld(recording))
+        match = MatchLoop(scenario, header.seed, lambda _: _RecordedWorld(recording))
     except ScenarioError as error:
         raise RegressionCaseError(str(error)) from error
     player = next((each for each in match.players if each.robot == robot), None)

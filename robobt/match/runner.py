@@ -12,7 +12,7 @@ import numpy as np
 from robobt.config.errors import RobobtError
 from robobt.engines.run import run_tasks
 from robobt.engines.work import MAX_WORKERS, Work
-from robobt.match.loop import Match, WorldFactory
+from robobt.match.loop import MatchLoop, WorldFactory
 from robobt.match.refereeing import RefereeFactory, own_referee
 from robobt.match.results.file import ResultsFile
 from robobt.match.results.results import MatchResult, Summary, summarise
@@ -58,7 +58,7 @@ def trial_seed(seed: int, trial: int) -> int:
     return int(np.random.SeedSequence([seed, trial]).generate_state(1, np.uint64)[0] >> np.uint64(11))
 
 
-def run_trials(
+def run_trials_in(
     scenario: Scenario,
     world_factory: WorldFactory,
     trials: int | None = None,
@@ -68,7 +68,7 @@ def run_trials(
     record: Mapping[int, str | Path | Recorded] | None = None,
     on_result: Callable[[MatchResult], None] | None = None,
     referee: RefereeFactory = own_referee,
-    play: Callable[[Match], MatchResult] = Match.play,
+    play: Callable[[MatchLoop], MatchResult] = MatchLoop.play,
 ) -> Run:
     """Play a scenario many times.
 
@@ -158,12 +158,12 @@ class _Job:
     referee: RefereeFactory
     record: Mapping[int, Recorded]
     plays: tuple[Play, ...]
-    conduct: Callable[[Match], MatchResult]
+    conduct: Callable[[MatchLoop], MatchResult]
 
     def play(self, trial: int, _report: object) -> MatchResult:
         seed = trial_seed(self.seed, trial)
         record = self.record.get(trial, Recorded(None))
-        match = Match(
+        match = MatchLoop(
             self.scenario, seed, self.world_factory, record.file, trial, self.referee, layers=record.layers
         )
         return self.conduct(match)

@@ -11,7 +11,7 @@ from pydantic import ValidationError
 
 from robobt.config.errors import RobobtError, message_of
 from robobt.config.validation import first_problem
-from robobt.match.loop import Match
+from robobt.match.loop import MatchLoop
 from robobt.match.players import Player
 from robobt.match.referee.by_hand import Order, give
 from robobt.match.referee.referee import Referee
@@ -40,7 +40,7 @@ class SteeringError(RobobtError, ValueError):
 class Steering:
     """Changes a match between two ticks. Places are in world coordinates [m], headings in radians."""
 
-    def __init__(self, match: Match) -> None:
+    def __init__(self, match: MatchLoop) -> None:
         self._match = match
         self._setups = dict(match.scenario.robots)
 

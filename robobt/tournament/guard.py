@@ -13,7 +13,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from robobt.match.loop import Match
+from robobt.match.loop import MatchLoop
 from robobt.match.players import Player
 from robobt.tree import Status
 from robobt.world.game import Team
@@ -29,7 +29,7 @@ _TICKS = 1000
 
 
 @contextmanager
-def guarded(match: Match, note: Path, silence: float = SILENCE) -> Iterator[None]:
+def guarded(match: MatchLoop, note: Path, silence: float = SILENCE) -> Iterator[None]:
     """Note in a file whose tree is being ticked, and end this process when nothing happens any more.
 
     Args:

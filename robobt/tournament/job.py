@@ -18,7 +18,7 @@ from robobt.league.programs.program import ForfeitError
 from robobt.league.programs.staying import programs_in
 from robobt.league.referee.process import GameControllerError
 from robobt.league.wire.stream import StreamError
-from robobt.match.loop import Match
+from robobt.match.loop import MatchLoop
 from robobt.match.runner import trial_seed
 from robobt.plays import PLAYS
 from robobt.plays.base import Play
@@ -104,7 +104,7 @@ class Job:
                     world = opened.enter_context(
                         programs_in(world, scenario, programs, places, outputs, plan.speed)
                     )
-                match = Match(scenario, seed, lambda _: world, record, fixture.round, plan.referee)
+                match = MatchLoop(scenario, seed, lambda _: world, record, fixture.round, plan.referee)
                 with guarded(match, self._note(fixture), plan.silence):
                     result = match.play()
         except (GameControllerError, StreamError) as error:

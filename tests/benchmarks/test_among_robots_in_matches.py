@@ -80,7 +80,9 @@ def test_the_ball_lies_where_a_field_player_may_go(judged: ModuleType) -> None:
 
 def test_a_robot_in_the_way_drives_between_its_two_places(judged: ModuleType) -> None:
     start = next(judged.starts())
-    with judged.Match(judged.scenario("default", "geometric", start), 0, judged.world_from("sim")) as match:
+    with judged.MatchLoop(
+        judged.scenario("default", "geometric", start), 0, judged.world_from("sim")
+    ) as match:
         for _ in range(20):
             match.tick()
         robots = match.world.truth().opponents

@@ -117,7 +117,7 @@ def test_a_run_that_is_stopped_says_what_is_kept(
     def stopped(*_: object) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("robobt.match.loop.Match.tick", stopped)
+    monkeypatch.setattr("robobt.match.loop.MatchLoop.tick", stopped)
     out = ("--out", str(tmp_path)) if kept else ()
     given = ["compare", "striker_vs_goalie", "--blue", "", "--blue", "attack_nn", *QUICK, *out]
     shown = CliRunner().invoke(app, given)

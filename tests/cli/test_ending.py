@@ -23,7 +23,7 @@ from robobt.league.log.files import read_log
 from robobt.league.serve.serving import served_line_up, served_scenario
 from robobt.league.wire.endpoints import Endpoints
 from robobt.match import load_scenario
-from robobt.match.loop import Match
+from robobt.match.loop import MatchLoop
 from robobt.match.recording import load_recording
 from robobt.plays import PLAYS
 from robobt.world.command import RobotCommand
@@ -273,7 +273,7 @@ def told_to_stop(last: dict[RobotId, RobotCommand]) -> bool:
 @pytest.fixture(scope="module")
 def compiled(tmp_path_factory: pytest.TempPathFactory) -> None:
     """Play twice, so that no signal meets the compiler, or the reading of a file of what it kept."""
-    Match(load_scenario("six_v_six").lasting(2.0), 1, sim_world).play()
+    MatchLoop(load_scenario("six_v_six").lasting(2.0), 1, sim_world).play()
     endpoints, recording = free_endpoints(), tmp_path_factory.mktemp("compiled") / "played.robobt.arrows"
     with served_six_v_six(endpoints):
         robobt(*six_v_six(endpoints, recording), "--set", "ends.time_limit=1")

@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 from robobt.cli import app
-from robobt.match import load_scenario, run_trials
+from robobt.match import load_scenario, run_trials_in
 from robobt.match.recording import RecordingError, load_recording
 from robobt.worlds import sim_world
 from tests.campaign import count
@@ -31,7 +31,7 @@ def test_a_match_killed_at_random_moments_can_be_taken_up_again(tmp_path: Path) 
     rng, recorded, taken_up = random.Random(23), 0, 0
     scenario = load_scenario("striker_vs_goalie")
     begun = time.monotonic()
-    wanted = run_trials(scenario, sim_world, TRIALS).summary().trace
+    wanted = run_trials_in(scenario, sim_world, TRIALS).summary().trace
     whole = time.monotonic() - begun
     for number in range(count(200)):
         out, recording = tmp_path / f"{number}.jsonl", tmp_path / f"{number}.robobt.arrows"
@@ -58,7 +58,7 @@ def test_a_match_killed_at_random_moments_can_be_taken_up_again(tmp_path: Path) 
             taken_up += len(lines) > 1
             for line in lines[: -1 if not lines[-1].endswith(b"\n") else None]:
                 json.loads(line)
-        assert run_trials(scenario, sim_world, TRIALS, out=out).summary().trace == wanted
+        assert run_trials_in(scenario, sim_world, TRIALS, out=out).summary().trace == wanted
     assert recorded
     assert taken_up
     print(f"of {count(200)}, {recorded} left a recording and {taken_up} results")

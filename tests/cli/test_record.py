@@ -8,7 +8,7 @@ from typer.testing import CliRunner
 from robobt.cli import app
 from robobt.config.resources import bundled_scenarios
 from robobt.config.yaml import parse_marked, write_yaml
-from robobt.match import Match
+from robobt.match import MatchLoop
 from robobt.match.regression_cases import check_regression_case
 from robobt.match.scenario.scenario import load_scenario
 from robobt.plays import PLAYS, python_files
@@ -63,7 +63,7 @@ def test_a_case_of_a_play_from_a_python_file_is_saved_with_that_file(tmp_path: P
     recorded, case = tmp_path / "still.robobt.arrows", tmp_path / "case.yaml"
     with temporarily(PLAYS):
         import_file(file)
-        Match(load_scenario(tmp_path / "still.yaml").lasting(0.3), 3, sim_world, recorded).play()
+        MatchLoop(load_scenario(tmp_path / "still.yaml").lasting(0.3), 3, sim_world, recorded).play()
     wanted = ["record", "case", str(recorded), "--tick", "3", "--robot", "blue 0", "--out", str(case)]
     refused = CliRunner().invoke(app, wanted)
     assert refused.exit_code == 1
@@ -78,7 +78,7 @@ def test_a_case_of_a_play_from_a_python_file_is_saved_with_that_file(tmp_path: P
 @pytest.mark.integration
 def test_the_statistics_of_a_recording_are_those_of_the_match(tmp_path: Path) -> None:
     path = tmp_path / "match.robobt.arrows"
-    with Match(load_scenario("six_v_six").lasting(8.0), 3, sim_world, path) as match:
+    with MatchLoop(load_scenario("six_v_six").lasting(8.0), 3, sim_world, path) as match:
         result = match.play()
     done = CliRunner().invoke(app, ["record", "statistics", str(path), "--json"])
     assert done.exit_code == 0, done.output
@@ -92,7 +92,7 @@ def test_the_statistics_of_a_recording_are_those_of_the_match(tmp_path: Path) ->
 
 def test_a_recording_without_a_referee_has_no_statistics(tmp_path: Path) -> None:
     path = tmp_path / "free.robobt.arrows"
-    with Match(load_scenario("table4_trial1").lasting(0.1), 0, sim_world, path) as match:
+    with MatchLoop(load_scenario("table4_trial1").lasting(0.1), 0, sim_world, path) as match:
         assert match.play().teams == {}
     refused = CliRunner().invoke(app, ["record", "statistics", str(path)])
     assert refused.exit_code == 2

@@ -10,7 +10,7 @@ import pytest
 
 from robobt.engines.cluster import RayEngine
 from robobt.engines.run import running_on
-from robobt.match import MatchResult, load_scenario, run_trials
+from robobt.match import MatchResult, load_scenario, run_trials_in
 from robobt.tournament.play import play
 from robobt.tournament.played import MAY_DIFFER
 from robobt.worlds import sim_world
@@ -42,10 +42,10 @@ def figures(results: list[MatchResult]) -> list[dict[str, Any]]:
 
 def test_trials_are_the_same_on_one_machine_on_ray_and_with_a_lost_node(cluster: Any) -> None:
     scenario, trials = load_scenario("striker_vs_goalie").lasting(10.0), count(200)
-    local = run_trials(scenario, sim_world, trials, 2)
+    local = run_trials_in(scenario, sim_world, trials, 2)
     with RayEngine("ray") as engine, running_on(engine):
         assert engine.workers == 3
-        two = run_trials(scenario, sim_world, trials, 2)
+        two = run_trials_in(scenario, sim_world, trials, 2)
         told: list[int] = []
 
         def lose_a_node(result: MatchResult) -> None:
@@ -53,7 +53,7 @@ def test_trials_are_the_same_on_one_machine_on_ray_and_with_a_lost_node(cluster:
             if len(told) == trials // 2:
                 cluster.remove_node(cluster.list_all_nodes()[1], allow_graceful=False)
 
-        three = run_trials(scenario, sim_world, trials, 3, on_result=lose_a_node)
+        three = run_trials_in(scenario, sim_world, trials, 3, on_result=lose_a_node)
     assert len(cluster.list_all_nodes()) == 2
     assert sorted(told) == list(range(trials))
     assert figures(two.results) == figures(three.results) == figures(local.results)

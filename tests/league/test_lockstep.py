@@ -11,7 +11,7 @@ from robobt.league.serve.server import SimServer
 from robobt.league.serve.serving import served_scenario
 from robobt.league.wire.endpoints import Endpoints
 from robobt.match import load_scenario
-from robobt.match.loop import play_match
+from robobt.match.loop import MatchLoop
 from robobt.match.results.results import MatchResult
 from robobt.match.runner import trial_seed
 from robobt.match.scenario.scenario import Scenario
@@ -48,7 +48,9 @@ def over_the_network(
     ):
         if on_kick is not None:
             server.step = _telling(server, on_kick)  # type: ignore[method-assign]
-        return [play_match(scenario, trial_seed(scenario.seed, n), lambda _: world) for n in range(trials)]
+        return [
+            MatchLoop(scenario, trial_seed(scenario.seed, n), lambda _: world).play() for n in range(trials)
+        ]
 
 
 def _telling(server: SimServer, on_kick: Callable[[RobotId], None]) -> Callable[[], None]:
@@ -78,7 +80,7 @@ def test_kicks_are_counted_as_they_were_made(name: str) -> None:
 @pytest.mark.slow
 def test_the_attack_scores_as_often_over_the_network_as_in_process() -> None:
     scenario = load_scenario("attack_vs_goalkeeper_motion_full").model_copy(update={"period": 1 / 60})
-    here = [play_match(scenario, trial_seed(scenario.seed, n), sim_world) for n in range(TRIALS)]
+    here = [MatchLoop(scenario, trial_seed(scenario.seed, n), sim_world).play() for n in range(TRIALS)]
     there = over_the_network(scenario, TRIALS)
     for outcome in ("goal_blue", "saved"):
         one, other = (

@@ -21,7 +21,7 @@ from robobt.league.serve.server import SimServer
 from robobt.league.serve.serving import served_scenario
 from robobt.league.wire.messages import Change, Config, Referee
 from robobt.league.wire.sockets import Sender
-from robobt.match import Match, load_scenario
+from robobt.match import MatchLoop, load_scenario
 from robobt.sim import settings_from
 from robobt.world import Frame, RobotId, Team
 from robobt.world.game import Stage
@@ -68,7 +68,7 @@ class Refereed:
         # Nothing by itself: the test gives the commands.
         division = Change(update_config_change={"division": "DIV_B", "first_kickoff_team": "BLUE"})
         self.controller.change([division, *changes], Config(auto_continue=False))
-        self.match = Match(scenario, 1, lambda _: self.world)
+        self.match = MatchLoop(scenario, 1, lambda _: self.world)
 
     def close(self) -> None:
         self.world.close()

@@ -11,7 +11,7 @@ from robobt.league.serve.serving import served_scenario
 from robobt.league.serve.synchronous import StepServer
 from robobt.league.wire.stream import StreamError
 from robobt.league.world import LeagueWorld
-from robobt.match import load_scenario, play_match
+from robobt.match import MatchLoop, load_scenario
 from robobt.sim import settings_from
 from tests.league.served import free_endpoints
 
@@ -31,7 +31,7 @@ def trace(period: float = 1 / 60) -> tuple[str, int]:
             with LeagueWorld(
                 scenario.field, robots, settings, scenario.period, simulator="steps", endpoints=there
             ) as world:
-                result = play_match(scenario, 1, lambda _: world)
+                result = MatchLoop(scenario, 1, lambda _: world).play()
         finally:
             over.set()
             playing.join()

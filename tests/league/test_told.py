@@ -14,7 +14,7 @@ from robobt.league.serve.server import SimServer
 from robobt.league.wire.endpoints import Endpoints
 from robobt.league.wire.vision import CameraFrame
 from robobt.match import load_scenario
-from robobt.match.loop import Match
+from robobt.match.loop import MatchLoop
 from robobt.world import DIVISION_A, DIVISION_B, RobotCommand, RobotId, Team
 from robobt.world.field import FieldGeometry
 from robobt.worlds import world_from
@@ -89,7 +89,7 @@ def test_a_field_of_another_size_is_refused() -> None:
 def test_a_field_of_another_size_is_played_on_if_one_asks_for_it() -> None:
     scenario = load_scenario("six_v_six")
     with played(DIVISION_A, DIVISION_B, geometry="seen") as (world, _):
-        with Match(scenario, 1, lambda _: world) as match:
+        with MatchLoop(scenario, 1, lambda _: world) as match:
             assert match.tick()
         assert world.observe().field.length == DIVISION_A.length
 

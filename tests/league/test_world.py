@@ -17,7 +17,7 @@ from robobt.league.wire.gameevents import write_event
 from robobt.league.wire.referee_publisher import RefereePublisher
 from robobt.league.wire.sockets import Sender
 from robobt.league.world import LeagueWorld
-from robobt.match import load_scenario, run_trials
+from robobt.match import load_scenario, run_trials_in
 from robobt.match.referee.events import EventKind, RefereeEvent
 from robobt.sim.settings import REALISM, SimSettings, preset
 from robobt.world import World
@@ -228,7 +228,7 @@ def test_a_scenario_is_played_over_the_network_as_in_the_process() -> None:
     factory = world_from(f"league://protocol?vision={endpoints.vision}&speed=2&{options}")
     assert isinstance(factory, LeagueFactory)
     with served(served_field, endpoints, 2.0):
-        (result,) = run_trials(scenario, factory, trials=1).results
+        (result,) = run_trials_in(scenario, factory, trials=1).results
         factory.close()
     assert result.ticks > 20
     assert not any(robot.errors for robot in result.robots.values())

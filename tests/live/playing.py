@@ -15,7 +15,7 @@ from websockets.sync.client import ClientConnection, connect
 from robobt.live.messages import Act
 from robobt.live.server import Server
 from robobt.live.session import Live
-from robobt.match import Match
+from robobt.match import MatchLoop
 from robobt.match.scenario.scenario import Scenario, load_scenario
 from robobt.worlds import sim_world
 from tests.waiting import LIMIT, soon
@@ -27,10 +27,10 @@ class Session:
 
     server: Server
     live: Live
-    matches: list[Match]
+    matches: list[MatchLoop]
 
     @property
-    def match(self) -> Match:
+    def match(self) -> MatchLoop:
         return self.matches[-1]
 
     def act(self, act: Act) -> None:
@@ -46,10 +46,10 @@ class Session:
 def playing(scenario: str | Scenario = "striker_vs_goalie", **settings: Any) -> Iterator[Session]:
     """Play a scenario live, for ever, until the end of the block."""
     loaded = load_scenario(scenario) if isinstance(scenario, str) else scenario
-    matches: list[Match] = []
+    matches: list[MatchLoop] = []
 
-    def make(trial: int) -> Match:
-        matches.append(Match(loaded, 7 + trial, sim_world, trial=trial))
+    def make(trial: int) -> MatchLoop:
+        matches.append(MatchLoop(loaded, 7 + trial, sim_world, trial=trial))
         return matches[-1]
 
     with Server() as server:

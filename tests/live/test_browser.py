@@ -12,7 +12,7 @@ from robobt.live.messages import Pause
 from robobt.live.replay_html import write_html
 from robobt.live.server import Server
 from robobt.live.session import Live
-from robobt.match import Match, load_scenario
+from robobt.match import MatchLoop, load_scenario
 from robobt.match.recording.reader import parse_recording
 from robobt.worlds import sim_world
 from tests.live.chromium import Page
@@ -67,7 +67,7 @@ def test_a_page_says_that_nothing_is_played_yet(page: Page) -> None:
     with Server() as server:
         page.open(server.url)
         page.wait("return document.querySelector('.told').textContent.startsWith('Nothing is played yet')")
-        with Match(load_scenario("striker_vs_goalie"), 3, sim_world) as match:
+        with MatchLoop(load_scenario("striker_vs_goalie"), 3, sim_world) as match:
             Live(server).begin(match)
             page.wait(
                 "return window.robobt.match.robots && document.querySelector('.told').textContent === ''"

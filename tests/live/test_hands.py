@@ -10,7 +10,7 @@ import pytest
 from robobt.live.hands import Hands
 from robobt.live.messages import Act, GiveOrder, MoveBall, Play, Skill
 from robobt.live.server import Server
-from robobt.match import Match, load_scenario
+from robobt.match import MatchLoop, load_scenario
 from robobt.models.find import find_model
 from robobt.tree.recording import node_ids
 from robobt.world.game import RefereeCommand
@@ -20,7 +20,7 @@ from robobt.worlds import sim_world
 class Asked:
     """A match and who asks for something."""
 
-    def __init__(self, match: Match) -> None:
+    def __init__(self, match: MatchLoop) -> None:
         self.match, self._server = match, Server()
         self.hands = Hands(match, self._server, perf_counter)
 
@@ -34,7 +34,7 @@ class Asked:
 
 @pytest.fixture
 def asked() -> Iterator[Asked]:
-    with Match(load_scenario("three_v_three"), 3, sim_world) as match:
+    with MatchLoop(load_scenario("three_v_three"), 3, sim_world) as match:
         yield Asked(match)
 
 
@@ -78,7 +78,7 @@ def test_a_page_lets_no_model_file_of_this_machine_be_loaded(asked: Asked, tmp_p
 def test_a_model_file_that_the_scenario_names_may_be_kept(tmp_path: Path) -> None:
     model = str(shutil.copy(find_model("go_to_ball_ddpg"), tmp_path / "mine.pt"))
     setup = {"play": "go_to_ball_and_shoot", "params": {"policy": model}}
-    with Match(load_scenario("three_v_three").with_robot("blue 1", **setup), 3, sim_world) as match:
+    with MatchLoop(load_scenario("three_v_three").with_robot("blue 1", **setup), 3, sim_world) as match:
         asked = Asked(match)
         for robot in ("blue 1", "blue 2"):
             assert asked.told(Play(do="play", robot=robot, **setup)) == ""

@@ -15,7 +15,7 @@ from websockets.exceptions import ConnectionClosed
 from robobt.live.hands import Hands
 from robobt.live.messages import MOST_BYTES, MOST_REFUSED, Message, read
 from robobt.live.server import Server
-from robobt.match import Match, load_scenario
+from robobt.match import MatchLoop, load_scenario
 from robobt.plays import PLAYS
 from robobt.worlds import sim_world
 from tests.live.playing import Client, playing
@@ -117,7 +117,7 @@ def test_whatever_is_sent_is_a_message_or_none(count: int) -> None:
 @pytest.mark.parametrize("count", [60, pytest.param(3000, marks=pytest.mark.slow)])
 def test_whatever_is_asked_for_the_match_goes_on(count: int) -> None:
     server = Server()
-    with Match(load_scenario("three_v_three").lasting(1e4), 3, sim_world) as match:
+    with MatchLoop(load_scenario("three_v_three").lasting(1e4), 3, sim_world) as match:
         hands = Hands(match, server, perf_counter)
         messages: Iterator[Message] = filter(None, map(read, hostile(2)))
         for number, message in zip(range(count), messages, strict=False):

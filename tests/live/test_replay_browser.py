@@ -10,7 +10,7 @@ from selenium.webdriver.common.action_chains import ActionChains
 from selenium.webdriver.support.ui import Select
 
 from robobt.live.replay_html import write_html
-from robobt.match import Match, load_scenario
+from robobt.match import MatchLoop, load_scenario
 from robobt.match.recording import Event, Recording, load_recording
 from robobt.world.game import GameState, RefereeCommand, Restart, Team, TeamStatus
 from robobt.worlds import sim_world
@@ -24,7 +24,7 @@ pytestmark = pytest.mark.integration
 def recording(tmp_path_factory: pytest.TempPathFactory) -> Recording:
     path = tmp_path_factory.mktemp("chart") / "m.robobt.arrows"
     scenario = load_scenario("striker_vs_goalie").lasting(6.0)
-    with Match(scenario, 3, sim_world, path) as match:
+    with MatchLoop(scenario, 3, sim_world, path) as match:
         while match.tick():
             pass
     return load_recording(path)

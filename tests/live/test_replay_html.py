@@ -12,7 +12,7 @@ import pytest
 
 from robobt.live import replay_html as module
 from robobt.live.replay_html import page_data, replay_html, write_html
-from robobt.match import Match
+from robobt.match import MatchLoop
 from robobt.match.recording import RecordedRobot, Recorder, Recording, RecordingError, load_recording
 from robobt.match.recording.statistics import recorded_statistics
 from robobt.match.scenario.scenario import load_scenario
@@ -298,7 +298,7 @@ def test_a_goal_line_of_some_other_kind_is_not_drawn(tmp_path: Path, other: Any)
 @pytest.fixture(scope="module")
 def team_match(tmp_path_factory: pytest.TempPathFactory) -> Recording:
     path = tmp_path_factory.mktemp("team") / "team.robobt.arrows"
-    with Match(load_scenario("team_v_baseline").lasting(12.0), 3, sim_world, path) as match:
+    with MatchLoop(load_scenario("team_v_baseline").lasting(12.0), 3, sim_world, path) as match:
         while match.tick():
             pass
     return load_recording(path)

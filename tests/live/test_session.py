@@ -12,7 +12,7 @@ from robobt.live.messages import Act, Pause, Seek, Speed
 from robobt.live.replayed import Replay
 from robobt.live.server import Server
 from robobt.live.session import Live
-from robobt.match import Match, load_scenario, play_match, run_trials
+from robobt.match import MatchLoop, load_scenario, run_trials_in
 from robobt.match.recording import load_recording
 from robobt.match.recording.reader import parse_recording
 from robobt.match.scenario.scenario import Scenario
@@ -61,7 +61,7 @@ def act(server: Server, act: Act) -> None:
 def test_a_match_takes_as_long_as_its_speed_says(server: Server, scenario: Scenario, speed: float) -> None:
     clock = Clock()
     live = Live(server, speed, clock=clock, sleep=clock.sleep)
-    with Match(scenario, 3, sim_world) as match:
+    with MatchLoop(scenario, 3, sim_world) as match:
         assert live.play(match)
     assert clock.now == pytest.approx(match.result().time / speed, rel=0.02)
     assert live.late == 0
@@ -72,15 +72,15 @@ def test_what_is_shown_is_what_would_be_played_unseen(
 ) -> None:
     monkeypatch.setattr("robobt.live.session.LOOK", 0.1)
     record = {1: tmp_path / "m.robobt.arrows"}
-    run = run_trials(scenario, sim_world, 2, seed=5, play=Live(server, 20.0).conduct, record=record)
-    usual = run_trials(scenario, sim_world, 2, seed=5)
+    run = run_trials_in(scenario, sim_world, 2, seed=5, play=Live(server, 20.0).conduct, record=record)
+    usual = run_trials_in(scenario, sim_world, 2, seed=5)
     assert [result.trace for result in run.results] == [result.trace for result in usual.results]
     assert record[1].stat().st_size > 1000
 
 
 def test_models_are_loaded_before_a_match_goes_on(server: Server) -> None:
     shot_predictor.cache_clear()
-    with Match(load_scenario("three_v_three"), 3, sim_world) as match:
+    with MatchLoop(load_scenario("three_v_three"), 3, sim_world) as match:
         Live(server).begin(match)
     before = shot_predictor.cache_info().misses
     shot_predictor(ExpectedGoal().model, SHOT_SCENE)
@@ -97,11 +97,11 @@ def test_a_field_waits_for_nobody(server: Server, scenario: Scenario) -> None:
     live = Live(server, clock=clock, sleep=clock.sleep)
     act(server, Pause(do="pause", on=True))
     act(server, Speed(do="speed", factor=0.1))
-    with Match(scenario, 3, lambda scenario: Field(sim_world(scenario))) as match:
+    with MatchLoop(scenario, 3, lambda scenario: Field(sim_world(scenario))) as match:
         assert live.play(match)
     assert clock.slept == 0.0
     assert "waits for nobody" in server.audience.state["said"][1]
-    assert match.result().trace == play_match(scenario, 3, sim_world).trace
+    assert match.result().trace == MatchLoop(scenario, 3, sim_world).play().trace
 
 
 @pytest.mark.slow
@@ -118,7 +118,7 @@ def test_a_recording_is_gone_on_with_from_any_time(
     server: Server, scenario: Scenario, tmp_path: Path
 ) -> None:
     path = tmp_path / "m.robobt.arrows"
-    with Match(scenario, 3, sim_world, path) as match:
+    with MatchLoop(scenario, 3, sim_world, path) as match:
         while match.tick():
             pass
     replay = Replay(server, path, speed=20.0)
@@ -145,7 +145,7 @@ def test_a_recording_is_gone_on_with_from_any_time(
 
 def test_a_recording_is_shown_as_it_was_played(server: Server, scenario: Scenario, tmp_path: Path) -> None:
     path = tmp_path / "m.robobt.arrows"
-    with Match(scenario, 3, sim_world, path) as match:
+    with MatchLoop(scenario, 3, sim_world, path) as match:
         while match.tick():
             pass
     replay = Replay(server, path, start=1.0, speed=20.0)

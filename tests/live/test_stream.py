@@ -12,7 +12,7 @@ import pytest
 from robobt.live import stream as module
 from robobt.live.replay_html import page_data
 from robobt.live.stream import Stream
-from robobt.match import Match
+from robobt.match import MatchLoop
 from robobt.match.recording import Recording, load_recording
 from robobt.match.recording.reader import parse_recording
 from robobt.match.scenario.scenario import load_scenario
@@ -28,7 +28,7 @@ def played(tmp_path_factory: pytest.TempPathFactory) -> tuple[Stream, Recording,
     """A match that was streamed and recorded, and the present at each second."""
     path = tmp_path_factory.mktemp("live") / "m.robobt.arrows"
     presents = []
-    with Match(load_scenario("team_v_baseline").lasting(SECONDS), 3, sim_world, path) as match:
+    with MatchLoop(load_scenario("team_v_baseline").lasting(SECONDS), 3, sim_world, path) as match:
         stream = Stream(match.capture())
         ticks = 0
         while match.tick():
@@ -139,7 +139,7 @@ def test_what_is_saved_is_what_was_recorded(played: tuple[Stream, Recording, lis
 def test_only_the_last_minutes_are_kept_and_can_still_be_saved(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(module, "KEPT", 2.0)
     monkeypatch.setattr(module, "_SEGMENT", 1.0)
-    with Match(load_scenario("striker_vs_goalie").lasting(7.0), 4, sim_world) as match:
+    with MatchLoop(load_scenario("striker_vs_goalie").lasting(7.0), 4, sim_world) as match:
         stream = Stream(match.capture())
         while match.tick():
             stream.advance()

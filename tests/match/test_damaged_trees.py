@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from py_trees.common import ParallelPolicy
 
-from robobt.match import Match
+from robobt.match import MatchLoop
 from robobt.match.recording import load_recording
 from robobt.match.scenario.scenario import ScenarioError, scenario_from
 from robobt.plays import PLAYS
@@ -95,13 +95,13 @@ GOES_ON: dict[str, Callable[[Behaviour], object]] = {
 }
 
 
-def match_with(damage: str, record: Path | None = None) -> Match:
+def match_with(damage: str, record: Path | None = None) -> MatchLoop:
     given = data(ends={"time_limit": 0.2})
     (fine,) = given["robots"]["blue"]
     start = {"position": [-2.0, 2.0], "heading": 0.0}
     damaged = {"number": 1, "play": "damaged", "params": {"damage": damage}, "start": start}
     given["robots"]["blue"] = [fine, damaged]
-    return Match(scenario_from(given, "test.yaml"), 1, PlainWorld, record=record)
+    return MatchLoop(scenario_from(given, "test.yaml"), 1, PlainWorld, record=record)
 
 
 def _damaged(*, damage: str = "all removed") -> Behaviour:

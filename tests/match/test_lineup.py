@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import pytest
 
-from robobt.match import Match, load_scenario
+from robobt.match import MatchLoop, load_scenario
 from robobt.sim import SimWorld
 from robobt.world import Frame, GameState, RefereeCommand, RobotId, Team
 from robobt.world.game import TeamStatus
@@ -21,7 +21,7 @@ class Controlled:
 
     def __init__(self) -> None:
         self.game = GameState(RefereeCommand.FORCE_START)
-        self.match = Match(load_scenario("six_v_six").without_referee(), 1, self._world)
+        self.match = MatchLoop(load_scenario("six_v_six").without_referee(), 1, self._world)
 
     def _world(self, scenario: object) -> World:
         world = sim_world(scenario)  # type: ignore[arg-type]
@@ -113,7 +113,7 @@ def test_a_robot_that_has_left_is_not_there_for_the_trees() -> None:
 
 def test_everybody_stands_in_a_halt_whatever_the_plays_are() -> None:
     controlled = Controlled()
-    controlled.match = Match(load_scenario("striker_vs_goalie"), 1, controlled._world)
+    controlled.match = MatchLoop(load_scenario("striker_vs_goalie"), 1, controlled._world)
     moving = controlled.play(0.7)
     assert max(robot.speed for robot in (*moving.own, *moving.opponents)) > 0.5
     controlled.game = GameState(RefereeCommand.HALT, may_touch=False)
@@ -123,7 +123,7 @@ def test_everybody_stands_in_a_halt_whatever_the_plays_are() -> None:
 
 def test_the_ends_of_the_scenario_do_not_end_a_match_that_a_controller_decides() -> None:
     controlled = Controlled()
-    controlled.match = Match(load_scenario("striker_vs_goalie").lasting(0.5), 1, controlled._world)
+    controlled.match = MatchLoop(load_scenario("striker_vs_goalie").lasting(0.5), 1, controlled._world)
     controlled.game = GameState(RefereeCommand.FORCE_START, blue_score=2, yellow_score=1)
     controlled.play(2.0)
     result = controlled.match.result()
@@ -133,4 +133,4 @@ def test_the_ends_of_the_scenario_do_not_end_a_match_that_a_controller_decides()
 def test_a_scenario_with_its_own_referee_is_refused_where_a_controller_decides() -> None:
     controlled = Controlled()
     with pytest.raises(Exception, match=r"six_v_six.*referee: .*--referee none"):
-        Match(load_scenario("six_v_six"), 1, controlled._world)
+        MatchLoop(load_scenario("six_v_six"), 1, controlled._world)

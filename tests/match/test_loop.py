@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from py_trees.common import Status
 
-from robobt.match import Match, MatchResult, play_match
+from robobt.match import MatchLoop, MatchResult
 from robobt.match.recording import load_recording
 from robobt.match.referee.events import Decision, EventKind, RefereeEvent
 from robobt.match.refereeing import RefereeFactory, own_referee
@@ -37,7 +37,7 @@ def scenario(**changes: Any) -> Scenario:
 
 
 def play(seed: int = 1, **changes: Any) -> MatchResult:
-    return play_match(scenario(**changes), seed, PlainWorld)
+    return MatchLoop(scenario(**changes), seed, PlainWorld).play()
 
 
 def test_a_robot_that_reaches_the_ball_and_kicks_it_scores():
@@ -59,7 +59,7 @@ def test_yellow_attacks_the_other_goal():
 
 def test_each_team_is_shown_the_field_from_its_own_side():
     both = scenario(robots={"blue": [robot()], "yellow": [robot()]}, ball={"position": [0.0, 1.0]})
-    match = Match(both, 1, PlainWorld)
+    match = MatchLoop(both, 1, PlainWorld)
     match.tick()
     blue, yellow = [player.store for player in match.players]
     assert (blue.frame.team, yellow.frame.team) == (Team.BLUE, Team.YELLOW)
@@ -79,21 +79,23 @@ class PlacingReferee:
 
 
 def test_robots_see_a_ball_where_the_referee_has_just_put_it():
-    match = Match(scenario(), 1, sim_world, referee=lambda *_: PlacingReferee())
+    match = MatchLoop(scenario(), 1, sim_world, referee=lambda *_: PlacingReferee())
     with match:
         match.tick()
     assert match.players[0].store.frame.ball.position == (1.0, 2.0)
 
 
 def test_team_mates_share_a_store_and_opponents_do_not():
-    match = Match(scenario(robots={"blue": [robot(), robot(1, y=1.0)], "yellow": [robot()]}), 1, PlainWorld)
+    match = MatchLoop(
+        scenario(robots={"blue": [robot(), robot(1, y=1.0)], "yellow": [robot()]}), 1, PlainWorld
+    )
     first, second, other = [player.store.team for player in match.players]
     assert first is second
     assert first is not other
 
 
 def test_every_tick_observes_and_acts_once():
-    match = Match(scenario(), 1, PlainWorld)
+    match = MatchLoop(scenario(), 1, PlainWorld)
     for _ in range(5):
         match.tick()
     assert isinstance(match.world, PlainWorld)
@@ -114,7 +116,7 @@ def test_every_tick_observes_and_acts_once():
 )
 def test_a_tree_that_fails_stops_its_robot_and_nobody_else(breaks: str, said: str):
     broken = robot(1, y=1.0, breaks=breaks)
-    match = Match(scenario(robots={"blue": [robot(kick=4.0), broken]}), 1, PlainWorld)
+    match = MatchLoop(scenario(robots={"blue": [robot(kick=4.0), broken]}), 1, PlainWorld)
     while match.tick():
         pass
     result = match.result()
@@ -143,7 +145,7 @@ def test_a_robot_that_is_not_seen_is_not_ticked():
             frame.own = ()
             return frame
 
-    result = play_match(scenario(robots={"blue": [robot(breaks="raise")]}).lasting(0.2), 1, Blind)
+    result = MatchLoop(scenario(robots={"blue": [robot(breaks="raise")]}).lasting(0.2), 1, Blind).play()
     assert result.robots["blue 0"].errors == 0
     assert result.outcome == "time"
 
@@ -198,7 +200,7 @@ class TestEnds:
                 if self.ball[0] > 1.0:
                     self.ball = (*self.ball[:2], 0.0, 0.0)
 
-        assert play_match(scenario(ends=ends), 1, Sticky).outcome == "rest"
+        assert MatchLoop(scenario(ends=ends), 1, Sticky).play().outcome == "rest"
 
     def test_the_referee_counts_goals_and_restarts_until_the_score_limit(self):
         ends = {"time_limit": 60.0, "score_limit": 2}
@@ -232,7 +234,7 @@ class TestRepeatability:
     RANDOM: ClassVar = {"ball": {"position": {"center": [0, 0], "radius": 1.0}}}
 
     def test_one_seed_is_one_match_bit_for_bit(self):
-        first, second = (play_match(scenario(**self.RANDOM), 7, sim_world) for _ in range(2))
+        first, second = (MatchLoop(scenario(**self.RANDOM), 7, sim_world).play() for _ in range(2))
         assert first.trace == second.trace
         assert {**first.to_json(), "wall_time": 0} == {**second.to_json(), "wall_time": 0}
 
@@ -244,12 +246,12 @@ class TestRepeatability:
 
     def test_recording_changes_nothing(self, tmp_path: Path):
         path = tmp_path / "match.robobt.arrows"
-        recorded = play_match(scenario(**self.RANDOM), 7, sim_world, path)
-        assert recorded.trace == play_match(scenario(**self.RANDOM), 7, sim_world).trace
+        recorded = MatchLoop(scenario(**self.RANDOM), 7, sim_world, path).play()
+        assert recorded.trace == MatchLoop(scenario(**self.RANDOM), 7, sim_world).play().trace
 
     def test_a_recording_holds_every_tick_and_the_end(self, tmp_path: Path):
         path = tmp_path / "match.robobt.arrows"
-        result = play_match(scenario(), 7, PlainWorld, path, trial=3)
+        result = MatchLoop(scenario(), 7, PlainWorld, path, trial=3).play()
         recording = load_recording(path)
         assert recording.complete
         assert recording.header.trial == 3
@@ -258,7 +260,7 @@ class TestRepeatability:
 
 
 def test_kicks_are_those_the_simulator_reports():
-    match = Match(scenario(robots={"blue": [robot(kick=1.5)]}), 1, sim_world)
+    match = MatchLoop(scenario(robots={"blue": [robot(kick=1.5)]}), 1, sim_world)
     told, seen = [], []
     while match.tick():
         seen += match.measures.kicked
@@ -301,7 +303,7 @@ def test_a_skill_that_spoils_its_frame_spoils_nobody_elses(
 ) -> None:
     places = {"blue": -1.0, "yellow": 1.0}
     robots = {name: [robot(number=i, x=i / 2 - 2.0, y=y) for i in range(3)] for name, y in places.items()}
-    plain, spoilt = [Match(scenario(robots=robots), 3, PlainWorld) for _ in range(2)]
+    plain, spoilt = [MatchLoop(scenario(robots=robots), 3, PlainWorld) for _ in range(2)]
     first = next(player for player in spoilt.players if player.robot == RobotId(Team(team), 0))
     decide = first.runner.tick
 
@@ -342,14 +344,14 @@ class ScriptedReferee:
 
 def test_another_referee_decides_instead_of_the_scenarios_own() -> None:
     referee = ScriptedReferee()
-    result = Match(scenario(), 1, PlainWorld, referee=referee).play()
+    result = MatchLoop(scenario(), 1, PlainWorld, referee=referee).play()
     assert (result.outcome, result.blue_score) == ("full_time", 1)
     assert referee.closed == 1
 
 
 def test_the_referee_is_closed_when_a_match_breaks_off() -> None:
     referee = ScriptedReferee()
-    with suppress(ZeroDivisionError), Match(scenario(), 1, PlainWorld, referee=referee) as match:
+    with suppress(ZeroDivisionError), MatchLoop(scenario(), 1, PlainWorld, referee=referee) as match:
         match.tick()
         raise ZeroDivisionError
     assert referee.closed == 1
@@ -371,12 +373,12 @@ class Controlled(PlainWorld):
 @pytest.mark.parametrize("referee", [own_referee, lambda scenario, field: ScriptedReferee()])
 def test_a_referee_beside_a_game_controller_is_refused(referee: RefereeFactory) -> None:
     with pytest.raises(ScenarioError, match=r"test.yaml: referee: .* a game controller decides there; set"):
-        Match(scenario(referee=True), 1, Controlled, referee=referee)
+        MatchLoop(scenario(referee=True), 1, Controlled, referee=referee)
 
 
 def test_what_the_worlds_own_referee_reports_is_counted_and_recorded(tmp_path: Path):
     path = tmp_path / "match.robobt.arrows"
-    result = play_match(scenario().lasting(0.3), 1, Controlled, path)
+    result = MatchLoop(scenario().lasting(0.3), 1, Controlled, path).play()
     assert (result.teams["blue"].fouls, result.teams["yellow"].fouls) == (1, 0)
     crashes = [event for event in load_recording(path).events if event.kind == "bot_crash_unique"]
     assert [(crash.team, crash.robot) for crash in crashes] == [(Team.BLUE, BLUE_0)]

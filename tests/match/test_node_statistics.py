@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from robobt.match import ScenarioError, run_trials
+from robobt.match import ScenarioError, run_trials_in
 from robobt.match.node_statistics import node_statistics
 from robobt.match.scenario.scenario import scenario_from
 from robobt.world import RobotId, Team
@@ -23,7 +23,7 @@ def test_every_tick_of_the_first_trial_is_counted() -> None:
     counted = node_statistics(scenario(), PlainWorld)
     (node,) = counted[BLUE_0].counts()
     assert node.path == "Scripted"
-    assert node.ticks == node.runs == run_trials(scenario(), PlainWorld, 1).results[0].ticks - 1
+    assert node.ticks == node.runs == run_trials_in(scenario(), PlainWorld, 1).results[0].ticks - 1
 
 
 def test_only_robots_with_the_play_are_counted() -> None:

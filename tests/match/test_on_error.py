@@ -9,8 +9,8 @@ from unittest.mock import Mock
 
 import pytest
 
-from robobt.match import RunError, Scenario, ScenarioError, run_trials
-from robobt.match.loop import Match
+from robobt.match import RunError, Scenario, ScenarioError, run_trials_in
+from robobt.match.loop import MatchLoop
 from robobt.match.recording import load_recording
 from robobt.match.scenario.scenario import scenario_from
 from robobt.signals import Terminated
@@ -25,19 +25,19 @@ def breaking(breaks: str, **changes: Any) -> Scenario:
 
 
 def test_by_default_the_match_goes_on_without_the_robot() -> None:
-    (result,) = run_trials(breaking("raise"), PlainWorld).results
+    (result,) = run_trials_in(breaking("raise"), PlainWorld).results
     assert result.robots["blue 0"].errors == result.ticks - 1 > 0
 
 
 @pytest.mark.parametrize("breaks", ["raise", "nan"])
 def test_raise_ends_the_match_with_the_robot_and_the_nodes_path(breaks: str) -> None:
-    match = Match(breaking(breaks, on_error="raise"), 0, PlainWorld)
+    match = MatchLoop(breaking(breaks, on_error="raise"), 0, PlainWorld)
     with pytest.raises(TreeError, match=r"^blue 0: Scripted: "):
         match.tick()
 
 
 def test_what_the_node_raised_is_the_cause() -> None:
-    match = Match(breaking("raise", on_error="raise"), 0, PlainWorld)
+    match = MatchLoop(breaking("raise", on_error="raise"), 0, PlainWorld)
     with pytest.raises(TreeError) as raised:
         match.tick()
     assert isinstance(raised.value.__cause__, RuntimeError)
@@ -45,20 +45,20 @@ def test_what_the_node_raised_is_the_cause() -> None:
 
 def test_a_run_ends_with_file_trial_robot_and_node() -> None:
     with pytest.raises(RunError, match=r"^mine\.yaml: trial \d: blue 0: Scripted: RuntimeError: brok"):
-        run_trials(breaking("raise", on_error="raise"), PlainWorld, 2)
+        run_trials_in(breaking("raise", on_error="raise"), PlainWorld, 2)
 
 
 def test_the_recording_is_kept(tmp_path: Path) -> None:
     path = tmp_path / "raised.robobt.arrows"
     with pytest.raises(RunError):
-        run_trials(breaking("raise", on_error="raise"), PlainWorld, record={0: path})
+        run_trials_in(breaking("raise", on_error="raise"), PlainWorld, record={0: path})
     assert load_recording(path).header.trial == 0
 
 
 def test_finished_trials_can_be_continued_under_the_other_policy(tmp_path: Path) -> None:
     out = tmp_path / "results.jsonl"
-    first = run_trials(breaking("", on_error="raise"), PlainWorld, 2, out=out)
-    assert run_trials(breaking(""), PlainWorld, 2, out=out).results == first.results
+    first = run_trials_in(breaking("", on_error="raise"), PlainWorld, 2, out=out)
+    assert run_trials_in(breaking(""), PlainWorld, 2, out=out).results == first.results
 
 
 def test_another_word_is_refused() -> None:
@@ -70,7 +70,7 @@ def test_a_skill_that_ends_the_program_ends_the_match_and_its_recording_is_kept(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     path = tmp_path / "left.robobt.arrows"
-    match = Match(breaking(""), 0, PlainWorld, record=path)
+    match = MatchLoop(breaking(""), 0, PlainWorld, record=path)
 
     def leave() -> None:
         raise SystemExit(3)

@@ -12,7 +12,7 @@ from typing import Any
 
 import pytest
 
-from robobt.match import Match, run_trials
+from robobt.match import MatchLoop, run_trials_in
 from robobt.match.recording import load_recording
 from robobt.match.scenario.scenario import Scenario, scenario_from
 from robobt.match.steering import Steering
@@ -84,7 +84,7 @@ def test_outputs_go_where_the_match_was_started_whatever_folder_a_skill_goes_to(
 ) -> None:
     here = Path.cwd()
     record = {trial: f"trial-{trial}.robobt.arrows" for trial in range(2)}
-    run_trials(scenario("goes away", when), PlainWorld, 2, out=Path("results.jsonl"), record=record)
+    run_trials_in(scenario("goes away", when), PlainWorld, 2, out=Path("results.jsonl"), record=record)
     assert Path.cwd() == here
     assert sorted(path.name for path in here.iterdir()) == ["results.jsonl", *record.values()]
     assert list(elsewhere.iterdir()) == []
@@ -94,7 +94,7 @@ def test_outputs_go_where_the_match_was_started_whatever_folder_a_skill_goes_to(
 
 def test_a_recording_goes_on_in_the_folder_where_it_began(elsewhere: Path) -> None:
     here = Path.cwd()
-    with Match(scenario("nothing"), 1, PlainWorld, record="match.robobt.arrows") as match:
+    with MatchLoop(scenario("nothing"), 1, PlainWorld, record="match.robobt.arrows") as match:
         match.tick()
         os.chdir(elsewhere)
         Steering(match).play(RobotId(Team.BLUE, 1), "scripted", {})
@@ -140,7 +140,7 @@ def test_a_copy_that_a_skill_forks_writes_nothing(
     monkeypatch.setitem(DOES, copy, COPIES[copy][0])
     for does in ("nothing", copy):
         path = tmp_path / f"{does}.robobt.arrows"
-        run_trials(scenario(does, when), PlainWorld, 1, out=tmp_path / f"{does}.jsonl", record={0: path})
+        run_trials_in(scenario(does, when), PlainWorld, 1, out=tmp_path / f"{does}.jsonl", record={0: path})
     assert [COPIES[copy][1]] == ENDED
     plain, forked = [load_recording(tmp_path / f"{does}.robobt.arrows") for does in ("nothing", copy)]
     assert forked.complete

@@ -5,7 +5,7 @@ import pytest
 
 from robobt.config.resources import bundled_scenarios
 from robobt.config.yaml import parse_marked, write_yaml
-from robobt.match import Match
+from robobt.match import MatchLoop
 from robobt.match.recording import load_recording
 from robobt.match.regression_cases import (
     RegressionCaseError,
@@ -30,7 +30,7 @@ BLUE_0 = RobotId(Team.BLUE, 0)
 def recording(tmp_path_factory: pytest.TempPathFactory) -> Path:
     path = tmp_path_factory.mktemp("match") / "match.robobt.arrows"
     scenario = load_scenario("striker_vs_goalie").with_robot("blue 0", max_distance=None)
-    Match(scenario.lasting(1.5), 3, sim_world, path).play()
+    MatchLoop(scenario.lasting(1.5), 3, sim_world, path).play()
     return path
 
 
@@ -60,7 +60,7 @@ def test_noisy_late_cameras_are_played_again_as_the_trees_saw_them(tmp_path: Pat
     if sim_world(noisy).shows_truth:
         pytest.fail("this realism adds no noise")
     path = tmp_path / "noisy.robobt.arrows"
-    Match(noisy, 4, sim_world, path).play()
+    MatchLoop(noisy, 4, sim_world, path).play()
     recording = load_recording(path)
     assert recording.observed is not None
     assert recording.observation(20).ball != recording.frame(20).ball
@@ -79,7 +79,7 @@ def test_a_case_finds_its_files_from_anywhere(tmp_path: Path, monkeypatch: pytes
     (here / "match.yaml").write_text(write_yaml(scenario))
     monkeypatch.chdir(here)
     recorded = there / "match.robobt.arrows"
-    Match(load_scenario("match.yaml").lasting(0.6), 3, sim_world, recorded).play()
+    MatchLoop(load_scenario("match.yaml").lasting(0.6), 3, sim_world, recorded).play()
     save_regression_case(load_recording(recorded), BLUE_0, 20, Path("../tests/cases/case.yaml"))
     monkeypatch.chdir(nowhere)
     check_regression_case(tests / "case.yaml")

@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from robobt.match import MatchResult, Run, RunError, ScenarioError, run_trials
+from robobt.match import MatchResult, Run, RunError, ScenarioError, run_trials_in
 from robobt.match.recording import load_recording
 from robobt.match.results.file import ResultsFileError
 from robobt.match.runner import trial_seed
@@ -44,22 +44,22 @@ def test_trials_have_seeds_of_their_own():
 
 
 def test_the_scenario_says_how_often_and_with_which_seed():
-    run = run_trials(scenario(trials=3, seed=5), PlainWorld)
+    run = run_trials_in(scenario(trials=3, seed=5), PlainWorld)
     assert [result.seed for result in run.results] == [trial_seed(5, trial) for trial in range(3)]
     assert not run.interrupted
 
 
 def test_a_trial_does_not_depend_on_the_others():
-    few, many = run_trials(scenario(), PlainWorld, 2), run_trials(scenario(), PlainWorld, 4)
+    few, many = run_trials_in(scenario(), PlainWorld, 2), run_trials_in(scenario(), PlainWorld, 4)
     assert figures(few) == figures(many)[:2]
-    assert figures(run_trials(scenario(), PlainWorld, 2, seed=1)) != figures(few)
+    assert figures(run_trials_in(scenario(), PlainWorld, 2, seed=1)) != figures(few)
 
 
 def test_a_run_over_worker_processes_is_the_same_run(tmp_path: Path):
     """Determinism over processes, in the real simulator: traces, figures and recordings are identical."""
     paths = [tmp_path / f"{workers}.robobt.arrows" for workers in (1, 2)]
     alone, shared = (
-        run_trials(scenario(), sim_world, 5, workers, record={3: path})
+        run_trials_in(scenario(), sim_world, 5, workers, record={3: path})
         for workers, path in zip((1, 2), paths, strict=True)
     )
     assert figures(shared) == figures(alone)
@@ -69,38 +69,38 @@ def test_a_run_over_worker_processes_is_the_same_run(tmp_path: Path):
 
 def test_every_result_is_reported_as_it_finishes():
     seen: list[MatchResult] = []
-    run = run_trials(scenario(), PlainWorld, 4, on_result=seen.append)
+    run = run_trials_in(scenario(), PlainWorld, 4, on_result=seen.append)
     assert seen == run.results
 
 
 class TestOut:
     def test_finished_trials_are_not_played_again(self, tmp_path: Path):
         out = tmp_path / "results.jsonl"
-        first = run_trials(scenario(), PlainWorld, 3, out=out)
-        again = run_trials(scenario(), RaisingWorld, 3, out=out)
+        first = run_trials_in(scenario(), PlainWorld, 3, out=out)
+        again = run_trials_in(scenario(), RaisingWorld, 3, out=out)
         assert again.results == first.results
-        assert figures(run_trials(scenario(), PlainWorld, 5, out=out)) == figures(
-            run_trials(scenario(), PlainWorld, 5)
+        assert figures(run_trials_in(scenario(), PlainWorld, 5, out=out)) == figures(
+            run_trials_in(scenario(), PlainWorld, 5)
         )
 
     def test_a_run_that_failed_keeps_what_was_finished(self, tmp_path: Path):
         out = tmp_path / "results.jsonl"
         with pytest.raises(RunError):
-            run_trials(scenario(), _fails_at_trial_2, 5, out=out)
+            run_trials_in(scenario(), _fails_at_trial_2, 5, out=out)
         assert len(out.read_text().splitlines()) == 1 + 2
 
     def test_results_of_another_seed_are_not_mixed_in(self, tmp_path: Path):
         out = tmp_path / "results.jsonl"
-        run_trials(scenario(), PlainWorld, 1, out=out)
+        run_trials_in(scenario(), PlainWorld, 1, out=out)
         with pytest.raises(ResultsFileError, match="seed"):
-            run_trials(scenario(), PlainWorld, 1, seed=9, out=out)
+            run_trials_in(scenario(), PlainWorld, 1, seed=9, out=out)
 
     @pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="pipes have no names here")
     def test_a_pipe_is_refused_instead_of_waited_for(self, tmp_path: Path):
         pipe = tmp_path / "pipe"
         os.mkfifo(pipe)
         with pytest.raises(ResultsFileError, match="not an ordinary file"):
-            run_trials(scenario(), PlainWorld, 1, out=pipe)
+            run_trials_in(scenario(), PlainWorld, 1, out=pipe)
 
 
 class _FailsAtTrial2(PlainWorld):
@@ -127,20 +127,20 @@ _fails_at_trial_2 = _FailsAtTrial2
 class TestFailures:
     def test_a_world_that_raises_is_one_clear_error(self, workers: int):
         with pytest.raises(RunError, match=r"test\.yaml: trial \d: RuntimeError: the field is on fire"):
-            run_trials(scenario(), RaisingWorld, 2, workers)
+            run_trials_in(scenario(), RaisingWorld, 2, workers)
 
     def test_a_scenario_that_does_not_fit_the_world_is_its_own_error(self, workers: int):
         wrong = scenario(simulator={"preset": "nothing"})
         with pytest.raises(
             ScenarioError, match=r"test\.yaml: simulator: no simulator preset is called 'nothing'"
         ):
-            run_trials(wrong, sim_world, 2, workers)
+            run_trials_in(wrong, sim_world, 2, workers)
 
 
 _SLEEPY_RUN = """
 import os, sys, time
 from pathlib import Path
-from robobt.match import run_trials
+from robobt.match import run_trials_in
 from tests.match.scripted import PlainWorld
 from tests.match.test_runner import scenario
 
@@ -150,7 +150,7 @@ class SleepyWorld(PlainWorld):
         time.sleep(60)
 
 if __name__ == "__main__":
-    run_trials(scenario(), SleepyWorld, 2, workers=2)
+    run_trials_in(scenario(), SleepyWorld, 2, workers=2)
 """
 
 
@@ -187,12 +187,12 @@ def test_a_play_that_only_this_process_has_is_said_so(monkeypatch: pytest.Monkey
         robot = {"number": 0, "play": "notebook", "start": {"position": [-2.0, 0.0], "heading": 0.0}}
         played = scenario(robots={"blue": [robot], "yellow": []})
         with pytest.raises(RunError, match=r"^a worker process does not know .*: No module named 'cell'$"):
-            run_trials(played, PlainWorld, 2, workers=2)
+            run_trials_in(played, PlainWorld, 2, workers=2)
 
 
 def test_a_world_that_cannot_be_sent_to_workers_is_said_so():
     with pytest.raises(RunError, match="cannot be sent to worker processes"):
-        run_trials(scenario(), lambda it: PlainWorld(it), 2, workers=2)
+        run_trials_in(scenario(), lambda it: PlainWorld(it), 2, workers=2)
 
 
 @pytest.mark.parametrize("workers", [1, 2])
@@ -206,7 +206,7 @@ def test_an_interrupt_keeps_what_is_finished(workers: int):
     # A shell that runs the tests in the background has Ctrl-C ignored.
     before = signal.signal(signal.SIGINT, signal.default_int_handler)
     try:
-        run = run_trials(scenario(), PlainWorld, 1000, workers, on_result=stop_after_two)
+        run = run_trials_in(scenario(), PlainWorld, 1000, workers, on_result=stop_after_two)
     finally:
         signal.signal(signal.SIGINT, before)
     assert run.interrupted
@@ -225,4 +225,4 @@ def test_an_interrupt_keeps_what_is_finished(workers: int):
 )
 def test_arguments_out_of_range_are_refused(arguments: dict[str, Any], said: str):
     with pytest.raises(ValueError, match=said):
-        run_trials(scenario(), PlainWorld, **arguments)
+        run_trials_in(scenario(), PlainWorld, **arguments)

@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 from py_trees.behaviour import Behaviour
 
-from robobt.match import Match, RunError, Scenario, run_trials
+from robobt.match import MatchLoop, RunError, Scenario, run_trials_in
 from robobt.match.scenario.scenario import scenario_from
 from robobt.match.steering import Steering
 from robobt.plays import PLAYS
@@ -64,7 +64,7 @@ def scenario(breaks: bool = False, **changes: Any) -> Scenario:
 
 
 def test_each_trial_sets_its_trees_up_and_shuts_them_down(diary: list[str]) -> None:
-    run_trials(scenario(), PlainWorld, 2)
+    run_trials_in(scenario(), PlainWorld, 2)
     trial = [
         *("robot 1 set up", "robot 2 set up"),
         *["robot 1 ticked", "robot 2 ticked"] * 3,
@@ -74,7 +74,7 @@ def test_each_trial_sets_its_trees_up_and_shuts_them_down(diary: list[str]) -> N
 
 
 def test_a_robot_that_could_not_be_set_up_stands_still_and_the_others_play() -> None:
-    (result,) = run_trials(scenario(breaks=True), PlainWorld, 1).results
+    (result,) = run_trials_in(scenario(breaks=True), PlainWorld, 1).results
     assert [robot.errors for robot in result.robots.values()] == [0, 0, 3]
     assert str(result.robots["blue 2"].first_error).startswith(
         "not/robot 2: setup() failed: ConnectionError: no camera"
@@ -84,12 +84,12 @@ def test_a_robot_that_could_not_be_set_up_stands_still_and_the_others_play() -> 
 def test_in_development_the_run_ends_with_the_robot_and_the_nodes_path(diary: list[str]) -> None:
     broken = scenario(breaks=True, on_error="raise")
     with pytest.raises(RunError, match=r"^mine\.yaml: trial 0: blue 2: not/robot 2: setup\(\) failed: "):
-        run_trials(broken, PlainWorld, 1)
+        run_trials_in(broken, PlainWorld, 1)
     assert diary == ["robot 1 set up", "robot 1 ticked", "robot 1 shut down"]
 
 
 def test_trees_are_shut_down_once_when_a_match_breaks_off(diary: list[str]) -> None:
-    with suppress(ZeroDivisionError), Match(scenario(), 0, PlainWorld) as match:
+    with suppress(ZeroDivisionError), MatchLoop(scenario(), 0, PlainWorld) as match:
         match.tick()
         match.close()
         raise ZeroDivisionError
@@ -99,12 +99,12 @@ def test_trees_are_shut_down_once_when_a_match_breaks_off(diary: list[str]) -> N
 
 def test_trees_are_shut_down_where_the_match_cannot_be_recorded(diary: list[str], tmp_path: Path) -> None:
     with pytest.raises(OSError, match="Is a directory"):
-        Match(scenario(), 0, PlainWorld, record=tmp_path)
+        MatchLoop(scenario(), 0, PlainWorld, record=tmp_path)
     assert diary[-2:] == ["robot 1 shut down", "robot 2 shut down"]
 
 
 def test_another_tree_in_the_middle_of_a_match_is_set_up_and_the_old_one_shut_down(diary: list[str]) -> None:
-    with Match(scenario(), 0, PlainWorld) as match:
+    with MatchLoop(scenario(), 0, PlainWorld) as match:
         steering, robot = Steering(match), RobotId(Team.BLUE, 2)
         match.tick()
         diary.clear()

@@ -8,7 +8,7 @@ from time import monotonic
 
 import pytest
 
-from robobt.match import Match, load_scenario
+from robobt.match import MatchLoop, load_scenario
 from robobt.worlds import sim_world
 
 MINUTES = float(os.environ.get("ROBOBT_SOAK", "30"))
@@ -30,7 +30,7 @@ def test_recorded_matches_for_half_an_hour_hold_no_more_than_one(tmp_path: Path)
     matches: list[tuple[float, int]] = []
     while len(matches) < 3 or monotonic() < end:
         record = tmp_path / "soak.robobt.arrows"
-        Match(scenario, len(matches), sim_world, record).play()
+        MatchLoop(scenario, len(matches), sim_world, record).play()
         record.unlink()
         matches.append(held())
         memory, descriptors = matches[-1]

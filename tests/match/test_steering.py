@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from robobt.match import Match
+from robobt.match import MatchLoop
 from robobt.match.recording import load_recording
 from robobt.match.scenario.scenario import Scenario, load_scenario, scenario_from
 from robobt.match.steering import Steering, SteeringError
@@ -25,8 +25,8 @@ def scenario() -> Scenario:
 
 
 @pytest.fixture
-def match(scenario: Scenario, tmp_path: Path) -> Iterator[Match]:
-    with Match(scenario, 5, sim_world, tmp_path / "m.robobt.arrows") as match:
+def match(scenario: Scenario, tmp_path: Path) -> Iterator[MatchLoop]:
+    with MatchLoop(scenario, 5, sim_world, tmp_path / "m.robobt.arrows") as match:
         match.tick()
         yield match
 
@@ -35,7 +35,7 @@ def events(tmp_path: Path) -> list[str]:
     return [event.kind for event in load_recording(tmp_path / "m.robobt.arrows").events]
 
 
-def test_what_is_moved_is_there_and_in_the_recording(match: Match, tmp_path: Path) -> None:
+def test_what_is_moved_is_there_and_in_the_recording(match: MatchLoop, tmp_path: Path) -> None:
     steering = Steering(match)
     steering.move_ball(1.0, -0.5, 2.0, 0.0)
     steering.move_robot(KEEPER, 3.0, 1.0, 3 * pi / 2)
@@ -51,7 +51,7 @@ def test_what_is_moved_is_there_and_in_the_recording(match: Match, tmp_path: Pat
     assert load_recording(tmp_path / "m.robobt.arrows").frame(1).ball.x == pytest.approx(1.0, abs=1e-4)
 
 
-def test_a_robot_that_was_taken_off_is_not_there_until_it_is_put_back(match: Match) -> None:
+def test_a_robot_that_was_taken_off_is_not_there_until_it_is_put_back(match: MatchLoop) -> None:
     steering = Steering(match)
     steering.take_off(KEEPER)
     for _ in range(3):
@@ -64,7 +64,7 @@ def test_a_robot_that_was_taken_off_is_not_there_until_it_is_put_back(match: Mat
 
 
 @pytest.mark.parametrize("place", [(20.0, 0.0), (0.0, -9.0), (float("nan"), 0.0)])
-def test_nothing_is_put_outside_the_walls(match: Match, place: tuple[float, float]) -> None:
+def test_nothing_is_put_outside_the_walls(match: MatchLoop, place: tuple[float, float]) -> None:
     with pytest.raises(SteeringError, match=r"outside the walls|not finite"):
         Steering(match).move_ball(*place)
 
@@ -75,7 +75,7 @@ def test_what_is_no_simulator_of_ours_moves_nothing(scenario: Scenario) -> None:
         def movable(self) -> bool:
             return False
 
-    with Match(scenario, 5, lambda scenario: Field(sim_world(scenario))) as match:
+    with MatchLoop(scenario, 5, lambda scenario: Field(sim_world(scenario))) as match:
         steering = Steering(match)
         assert not steering.movable
         for move in (
@@ -87,7 +87,7 @@ def test_what_is_no_simulator_of_ours_moves_nothing(scenario: Scenario) -> None:
                 move()
 
 
-def test_another_play_is_played_and_begins_another_recording(match: Match, tmp_path: Path) -> None:
+def test_another_play_is_played_and_begins_another_recording(match: MatchLoop, tmp_path: Path) -> None:
     steering = Steering(match)
     steering.play(STRIKER, "stand_still", {})
     for _ in range(5):
@@ -101,7 +101,7 @@ def test_another_play_is_played_and_begins_another_recording(match: Match, tmp_p
     assert second.events[0].kind == "plays"
 
 
-def test_parameters_of_a_play_are_changed_and_checked(match: Match) -> None:
+def test_parameters_of_a_play_are_changed_and_checked(match: MatchLoop) -> None:
     steering = Steering(match)
     before = {parameter.name: value for parameter, value in steering.parameters(STRIKER)}
     assert before["max_distance"] == 1.5
@@ -117,7 +117,7 @@ def test_parameters_of_a_play_are_changed_and_checked(match: Match) -> None:
     assert {parameter.name: value for parameter, value in steering.parameters(STRIKER)} == after
 
 
-def test_a_skill_gets_other_parameters_in_the_same_recording(match: Match, tmp_path: Path) -> None:
+def test_a_skill_gets_other_parameters_in_the_same_recording(match: MatchLoop, tmp_path: Path) -> None:
     steering = Steering(match)
     robot = match.capture().header.robots[0]
     path = next(node.path for node in robot.tree if node.type == "GoToBall")
@@ -138,7 +138,7 @@ def test_a_skill_gets_other_parameters_in_the_same_recording(match: Match, tmp_p
 
 
 def test_a_play_that_cannot_be_built_leaves_the_match_as_it_is(
-    match: Match, monkeypatch: pytest.MonkeyPatch
+    match: MatchLoop, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def breaks(self: object) -> None:
         raise ZeroDivisionError("no tree")
@@ -153,7 +153,7 @@ def test_a_play_that_cannot_be_built_leaves_the_match_as_it_is(
 
 
 def test_the_referee_takes_orders(tmp_path: Path) -> None:
-    with Match(load_scenario("three_v_three"), 5, sim_world, tmp_path / "m.robobt.arrows") as match:
+    with MatchLoop(load_scenario("three_v_three"), 5, sim_world, tmp_path / "m.robobt.arrows") as match:
         steering = Steering(match)
         match.tick()
         for order, team, command in (
@@ -172,19 +172,19 @@ def test_the_referee_takes_orders(tmp_path: Path) -> None:
     assert events(tmp_path).count("referee's order") == 5
 
 
-def test_free_play_takes_no_orders(match: Match) -> None:
+def test_free_play_takes_no_orders(match: MatchLoop) -> None:
     with pytest.raises(SteeringError, match="nobody referees"):
         Steering(match).order("halt", None)
 
 
-def test_a_situation_is_a_scenario_that_begins_there(match: Match) -> None:
+def test_a_situation_is_a_scenario_that_begins_there(match: MatchLoop) -> None:
     for _ in range(20):
         match.tick()
     steering = Steering(match)
     steering.play(KEEPER, "stand_still", {})
     situation = scenario_from(steering.situation(), "situation")
     truth = match.world.truth()
-    with Match(situation, 0, sim_world) as again:
+    with MatchLoop(situation, 0, sim_world) as again:
         frame = again.world.truth()
     assert frame.ball.position == pytest.approx(truth.ball.position, abs=1e-3)
     for before, after in zip(truth.own + truth.opponents, frame.own + frame.opponents, strict=True):
@@ -193,7 +193,7 @@ def test_a_situation_is_a_scenario_that_begins_there(match: Match) -> None:
     assert situation.robots.yellow[0].play == "stand_still"
 
 
-def test_a_field_without_robots_is_no_situation_to_begin_from(match: Match) -> None:
+def test_a_field_without_robots_is_no_situation_to_begin_from(match: MatchLoop) -> None:
     steering = Steering(match)
     for robot in (STRIKER, KEEPER):
         steering.take_off(robot)
@@ -203,7 +203,7 @@ def test_a_field_without_robots_is_no_situation_to_begin_from(match: Match) -> N
 
 def test_any_moment_of_a_match_can_be_begun_from() -> None:
     held = 0
-    with Match(load_scenario("three_v_three"), 5, sim_world) as match:
+    with MatchLoop(load_scenario("three_v_three"), 5, sim_world) as match:
         steering = Steering(match)
         for tick in range(700):
             assert match.tick()
@@ -222,7 +222,7 @@ def test_any_moment_of_a_match_can_be_begun_from() -> None:
     assert held > 2
 
 
-def test_what_lies_in_one_place_or_beyond_the_lines_is_moved_a_little(match: Match) -> None:
+def test_what_lies_in_one_place_or_beyond_the_lines_is_moved_a_little(match: MatchLoop) -> None:
     steering = Steering(match)
     x, y = match.world.truth().own[0].position
     match.world.put_robot(KEEPER, x, y, 0.0)

@@ -14,7 +14,7 @@ from paper.deployed import (
     deployed,
     deployed_scenario,
 )
-from robobt.match.loop import Match
+from robobt.match.loop import MatchLoop
 from robobt.match.scenario.scenario import Scenario, load_scenario
 from robobt.world.protocol import World
 from robobt.worlds import sim_world
@@ -100,7 +100,7 @@ def test_hard_situations_have_defenders_and_a_clock(defenders: int):
 
 @pytest.mark.parametrize("trial", range(5))
 def test_near_starts_are_two_and_a_half_to_four_and_a_half_metres_away(trial: int):
-    with Match(deployed_scenario(NEAR[0], "attack_main"), trial, sim_world) as match:
+    with MatchLoop(deployed_scenario(NEAR[0], "attack_main"), trial, sim_world) as match:
         me = match.world.truth().own[0]
     assert 2.5 - 0.01 <= hypot(4.5 - me.x, me.y) <= 4.5 + 0.01
 

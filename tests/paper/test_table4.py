@@ -21,7 +21,7 @@ from paper.table4_starts import LIMITS, drawn_starts, minimum_times, table4_scen
 from robobt.engines.run import running_on
 from robobt.engines.work import Work
 from robobt.match import load_scenario
-from robobt.match.loop import Match, WorldFactory
+from robobt.match.loop import MatchLoop, WorldFactory
 from robobt.match.results.file import ResultsFileError
 from robobt.match.runner import RunError, trial_seed
 from robobt.match.scenario.scenario import Scenario
@@ -170,7 +170,7 @@ def test_facing_the_goal_takes_a_longer_way_to_a_ball_aside() -> None:
 
 
 def start_of(scenario: Scenario, seed: int) -> Frame:
-    with Match(scenario, seed, sim_world) as match:
+    with MatchLoop(scenario, seed, sim_world) as match:
         return match.world.truth()
 
 

@@ -4,7 +4,7 @@ import pytest
 import torch
 
 from paper.deployed import Situation, deployed_scenario
-from robobt.match import run_trials, summarise
+from robobt.match import run_trials_in, summarise
 from robobt.match.scenario.scenario import Scenario
 from robobt.plays import attack_learned
 from robobt.skills import Duel, LearnedSkill, Score, Skill
@@ -17,7 +17,7 @@ from tests.skills.fixed_world import Alone, frame, robot
 
 
 def goals(scenario: Scenario, trials: int, seed: int = 91) -> int:
-    summary = summarise(run_trials(scenario, sim_world, trials, seed=seed).results)
+    summary = summarise(run_trials_in(scenario, sim_world, trials, seed=seed).results)
     assert summary.robots["blue 0"].errors == 0
     return summary.goals["blue"].trials.count
 
@@ -42,7 +42,7 @@ def test_without_patience_it_takes_what_there_is():
     impatient = deployed_scenario(Situation(speed="half"), "attack_expected").with_robot(
         "blue 0", min_score=1.0, patience=0.5, last_resort=0.2
     )
-    results = run_trials(impatient, sim_world, 3, seed=4).results
+    results = run_trials_in(impatient, sim_world, 3, seed=4).results
     assert all(result.robots["blue 0"].kicks for result in results)
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from robobt.match import Match, load_scenario
+from robobt.match import MatchLoop, load_scenario
 from robobt.match.results.results import MatchResult
 from robobt.worlds import sim_world
 
@@ -15,7 +15,7 @@ pytestmark = pytest.mark.integration
 def shoot_out() -> tuple[MatchResult, list[str]]:
     """The first kick of each team."""
     happened: list[str] = []
-    with Match(load_scenario("shoot_out").lasting(23.0), 1, sim_world) as match:
+    with MatchLoop(load_scenario("shoot_out").lasting(23.0), 1, sim_world) as match:
         update = match.referee.update  # type: ignore[union-attr]
 
         def told(frame):  # type: ignore[no-untyped-def]

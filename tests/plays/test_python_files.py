@@ -13,7 +13,7 @@ import pytest
 from typer.testing import CliRunner
 
 from robobt.cli import app
-from robobt.match import run_trials
+from robobt.match import run_trials_in
 from robobt.match.scenario.scenario import scenario_from
 from robobt.plays import PLAYS, python_files
 from robobt.plays.python_files import PythonFileError, import_file, imported_files
@@ -214,7 +214,7 @@ def test_worker_processes_run_the_files_too(write: Write, tmp_path: Path) -> Non
         data(robots={"blue": robots, "yellow": []}, ends={"time_limit": 0.2}, ball={"position": [0, 2]}),
         "test",
     )
-    here, there = (run_trials(played, PlainWorld, 2, workers=workers).results for workers in (1, 2))
+    here, there = (run_trials_in(played, PlainWorld, 2, workers=workers).results for workers in (1, 2))
     assert [result.trace for result in here] == [result.trace for result in there]
     assert not any(robot.errors for result in there for robot in result.robots.values())
 
@@ -230,7 +230,7 @@ def test_the_documents_example_scores(write: Write) -> None:
         ),
         "test",
     )
-    (result,) = run_trials(played, sim_world, 1).results
+    (result,) = run_trials_in(played, sim_world, 1).results
     assert result.outcome == "goal_blue"
     assert result.robots["blue 0"].errors == 0
 

@@ -9,7 +9,7 @@ from math import cos, hypot, sin
 import pytest
 
 from robobt.match import load_scenario
-from robobt.match.loop import Match
+from robobt.match.loop import MatchLoop
 from robobt.match.referee.settings import RefereeSettings
 from robobt.plays import defender, field_player, keeper
 from robobt.skills.store import Store, TeamStore
@@ -362,7 +362,7 @@ def played(request: pytest.FixtureRequest) -> Played:
     """Fifty seconds of a bundled match, with stops long enough to see who minds them."""
     scenario = load_scenario(request.param).lasting(50.0)
     scenario = scenario.model_copy(update={"referee": RefereeSettings(stop_time=1.5, placement="by_hand")})
-    match = Match(scenario, 1, sim_world)
+    match = MatchLoop(scenario, 1, sim_world)
     seen = Played()
     before, since = match.game, 0.0
     ball: Point = (0.0, 0.0)

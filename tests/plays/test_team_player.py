@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from robobt.match import load_scenario
-from robobt.match.loop import Match
+from robobt.match.loop import MatchLoop
 from robobt.plays import team_player
 from robobt.skills import Score
 from robobt.skills.aim.draw_goalkeeper import DrawGoalkeeper
@@ -34,7 +34,7 @@ class Watched:
         self.attackers: list[int] = []
         self.kicks = 0
         scenario = load_scenario("team_v_baseline").lasting(SECONDS)
-        with Match(scenario, 4, sim_world) as match:
+        with MatchLoop(scenario, 4, sim_world) as match:
             mine = [player for player in match.players if player.robot.team is Team.BLUE]
             team = mine[0].store.team
             while match.tick():
@@ -79,7 +79,7 @@ def test_with_them_it_plays_on_and_they_are_used(tmp_path: Path) -> None:
     for number in range(1, 6):
         scenario = scenario.with_robot(f"blue {number}", score=score, go=go)
     used: Counter[str] = Counter()
-    with Match(scenario, 4, sim_world) as match:
+    with MatchLoop(scenario, 4, sim_world) as match:
         mine = [player for player in match.players if player.robot.team is Team.BLUE]
         while match.tick():
             assert not any(player.problem for player in mine)
@@ -94,7 +94,7 @@ def test_a_policy_plays_while_the_ball_is_in_play_and_only_then(tmp_path: Path) 
     for number in (1, 2):
         scenario = scenario.with_robot(f"blue {number}", play="team_player", open_play=model)
     seen: Counter[tuple[bool, bool]] = Counter()
-    with Match(scenario, 4, sim_world) as match:
+    with MatchLoop(scenario, 4, sim_world) as match:
         mine = [player for player in match.players if player.robot in MINE]
         while match.tick():
             for player in mine:

@@ -7,7 +7,7 @@ from collections import Counter
 import pytest
 
 from robobt.match import load_scenario
-from robobt.match.loop import Match
+from robobt.match.loop import MatchLoop
 from robobt.match.referee.events import Decision, EventKind
 from robobt.match.referee.referee import Referee
 from robobt.match.refereeing import referee_settings
@@ -60,7 +60,7 @@ def taken(scenario: Scenario, seed: int) -> Counter[tuple[EventKind, RobotId | N
         return noting[-1]
 
     until = None
-    with Match(scenario, seed, sim_world, referee=referee) as match:
+    with MatchLoop(scenario, seed, sim_world, referee=referee) as match:
         while match.tick():
             now = match.world.truth().time
             if until is None and match.game.in_play:

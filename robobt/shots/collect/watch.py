@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from math import atan2, cos, hypot, sin
 
 from robobt.match.ends import Outcome
-from robobt.match.loop import Match
+from robobt.match.loop import MatchLoop
 from robobt.match.scenario.scenario import Scenario
 from robobt.shots.collect.late import LateWorld
 from robobt.shots.collect.plan import Attempt, Section
@@ -72,7 +72,7 @@ def take_shot(attempt: Attempt, trial: int) -> tuple[Row | None, float]:
         watched.append(WatchedWorld(world, shooter))
         return watched[0]
 
-    with Match(attempt.scenario, attempt.seed, factory, trial=trial) as match:
+    with MatchLoop(attempt.scenario, attempt.seed, factory, trial=trial) as match:
         world = watched[0]
         saved = False
         world.store = next(player.store for player in match.players if player.robot == shooter)

@@ -22,7 +22,7 @@ from robobt.league.wire.packets import PacketCounts
 from robobt.league.wire.referee_publisher import RefereePublisher
 from robobt.league.wire.tracker import write_tracked
 from robobt.league.wire.vision import read_vision
-from robobt.match import Match, load_scenario
+from robobt.match import MatchLoop, load_scenario
 from robobt.match.recording import load_recording
 from robobt.match.recording.statistics import recorded_statistics
 from robobt.match.referee.events import EventKind, RefereeEvent
@@ -274,7 +274,7 @@ def test_a_logs_game_events_are_recorded_once_and_counted(tmp_path: Path, played
 
 def test_a_scenarios_robots_watch_a_log(played: Path) -> None:
     factory = world_from(str(played))
-    match = Match(load_scenario("striker_vs_goalie").lasting(1.0), 0, factory)
+    match = MatchLoop(load_scenario("striker_vs_goalie").lasting(1.0), 0, factory)
     assert isinstance(match.world, LogWorld)
     result = match.play()
     assert result.ticks == 41

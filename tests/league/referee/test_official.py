@@ -15,7 +15,7 @@ from robobt.league.referee.official import OfficialReferee, OfficialRefereeFacto
 from robobt.league.referee.process import GameControllerError
 from robobt.league.referee.setup import ORIGIN, MatchSetup, command
 from robobt.league.wire.messages import CiInput, CiOutput, Message
-from robobt.match import Match, load_scenario, run_trials
+from robobt.match import MatchLoop, load_scenario, run_trials_in
 from robobt.match.recording import load_recording
 from robobt.match.referee.events import EventKind
 from robobt.match.referee.settings import RefereeSettings
@@ -262,8 +262,8 @@ def test_matches_are_played_recorded_and_repeated_under_it(program: Path, tmp_pa
     scenario = scenario_from(data(referee=True, ends={"time_limit": 13.0}), "test.yaml")
     factory: OfficialRefereeFactory = pickle.loads(pickle.dumps(OfficialRefereeFactory(program)))
     record = {0: tmp_path / "match.robobt.arrows"}
-    first = run_trials(scenario, PlainWorld, 1, record=record, referee=factory)
-    again = run_trials(scenario, PlainWorld, 1, referee=factory)
+    first = run_trials_in(scenario, PlainWorld, 1, record=record, referee=factory)
+    again = run_trials_in(scenario, PlainWorld, 1, referee=factory)
     assert first.results[0].trace == again.results[0].trace
     assert [game.command for _, game in load_recording(record[0]).games][:3] == [
         RefereeCommand.STOP,
@@ -281,7 +281,7 @@ def test_two_halves_are_played_to_the_end_under_the_official_one() -> None:
     factory = OfficialRefereeFactory(Path(OFFICIAL))
     traces = []
     for _ in range(2):
-        result = Match(scenario, 1, sim_world, referee=factory).play()
+        result = MatchLoop(scenario, 1, sim_world, referee=factory).play()
         assert result.outcome == "full_time"
         traces.append(result.trace)
     assert traces[0] == traces[1]

@@ -11,7 +11,7 @@ import pytest
 from robobt.league.referee.official import OfficialReferee, OfficialRefereeFactory
 from robobt.league.wire.messages import Change
 from robobt.match import load_scenario
-from robobt.match.loop import Match
+from robobt.match.loop import MatchLoop
 from robobt.match.referee.settings import RefereeSettings
 from robobt.world.game import GameState, Team
 from robobt.world.presence import without_absent
@@ -31,16 +31,16 @@ LONGEST = 10.0
 
 
 @pytest.fixture
-def match() -> Iterator[Match]:
+def match() -> Iterator[MatchLoop]:
     scenario = load_scenario("six_v_six").lasting(600.0)
     scenario = scenario.model_copy(update={"referee": RefereeSettings(yellow_card_time=15.0)})
-    with Match(scenario, 7, sim_world, referee=OfficialRefereeFactory(Path(OFFICIAL))) as match:
+    with MatchLoop(scenario, 7, sim_world, referee=OfficialRefereeFactory(Path(OFFICIAL))) as match:
         while not match.game.in_play:
             assert match.tick()
         yield match
 
 
-def ask(match: Match, change: Change) -> None:
+def ask(match: MatchLoop, change: Change) -> None:
     referee = match.referee
     assert isinstance(referee, OfficialReferee)
     referee.tell(change)
@@ -50,7 +50,7 @@ def team_change(**changes: object) -> Change:
     return Change(update_team_state_change=Change.UpdateTeamState(for_team="BLUE", **changes))  # type: ignore[arg-type]
 
 
-def until(match: Match, done: Callable[[Frame, GameState], bool], longest: float) -> float:
+def until(match: MatchLoop, done: Callable[[Frame, GameState], bool], longest: float) -> float:
     """Play until blue has done it; return for how long robots could move [s]."""
     spent = 0.0
     while spent < longest:
@@ -63,7 +63,7 @@ def until(match: Match, done: Callable[[Frame, GameState], bool], longest: float
     return longest
 
 
-def test_after_a_card_a_robot_leaves_and_comes_back(match: Match) -> None:
+def test_after_a_card_a_robot_leaves_and_comes_back(match: MatchLoop) -> None:
     ask(match, Change(add_yellow_card_change={"for_team": "BLUE"}))
     until(match, lambda _, game: game.blue.max_robots == 5, 2.0)
     assert until(match, lambda frame, _: len(frame.own) <= 5, LONGEST) < LONGEST
@@ -71,7 +71,7 @@ def test_after_a_card_a_robot_leaves_and_comes_back(match: Match) -> None:
     assert until(match, lambda frame, _: len(frame.own) == 6, LONGEST) < LONGEST
 
 
-def test_the_goalkeeper_that_is_named_goes_into_the_goal(match: Match) -> None:
+def test_the_goalkeeper_that_is_named_goes_into_the_goal(match: MatchLoop) -> None:
     def there(frame: Frame, _: GameState) -> bool:
         keeper = frame.robot(4)
         return keeper is not None and in_own_defense_area(frame.field, keeper.x, keeper.y)
@@ -81,7 +81,7 @@ def test_the_goalkeeper_that_is_named_goes_into_the_goal(match: Match) -> None:
     assert match.game.status(Team.BLUE).keeper == 4
 
 
-def test_at_a_substitution_all_stand_until_play_goes_on(match: Match) -> None:
+def test_at_a_substitution_all_stand_until_play_goes_on(match: MatchLoop) -> None:
     ask(match, team_change(requests_bot_substitution={"value": True}))
     assert until(match, lambda _, game: game.blue.substituting, 180.0) < 180.0
     begun = match.world.truth().time

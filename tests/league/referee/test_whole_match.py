@@ -12,7 +12,7 @@ import pytest
 
 from robobt.league.referee.official import OfficialReferee, OfficialRefereeFactory
 from robobt.match import load_scenario
-from robobt.match.loop import Match
+from robobt.match.loop import MatchLoop
 from robobt.match.referee.controller import Controller
 from robobt.match.referee.events import Decision, EventKind
 from robobt.match.referee.restarts import PLACE, Resumption
@@ -209,7 +209,7 @@ def compare(seconds: float | None, seed: int, name: str = "six_v_six") -> Compar
         made.append(Beside(OfficialRefereeFactory(Path(OFFICIAL))(scenario, grid), scenario, grid))
         return made[-1]
 
-    with Match(scenario, seed, sim_world, referee=make) as match:
+    with MatchLoop(scenario, seed, sim_world, referee=make) as match:
         match.play()
     return made[0].told
 

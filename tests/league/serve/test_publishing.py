@@ -12,7 +12,7 @@ from robobt.league.wire.packets import PacketCounts
 from robobt.league.wire.sockets import Receiver
 from robobt.league.wire.tracker import read_tracked
 from robobt.league.wire.vision import read_vision
-from robobt.match import Match, Scenario, load_scenario
+from robobt.match import MatchLoop, Scenario, load_scenario
 from robobt.sim import SimWorld
 from robobt.world import RobotId, Team, World
 from robobt.worlds import sim_world
@@ -30,7 +30,7 @@ def test_a_published_match_is_heard_and_plays_as_if_it_were_not() -> None:
         Receiver(*endpoints.tracker) as tracker,
         Receiver(*endpoints.referee) as referee,
     ):
-        match = Match(scenario, 1, factory)
+        match = MatchLoop(scenario, 1, factory)
         result = match.play()
         factory.close()
         seen = [read_vision(packet.data, PacketCounts()) for packet in vision.receive()]
@@ -44,7 +44,7 @@ def test_a_published_match_is_heard_and_plays_as_if_it_were_not() -> None:
     assert first.field == scenario.field
     assert first.frame is not None
     assert len(first.frame.robots) == 6
-    assert result.trace == Match(scenario, 1, sim_world).play().trace
+    assert result.trace == MatchLoop(scenario, 1, sim_world).play().trace
 
 
 def test_kicks_that_a_world_saw_are_counted_in_a_published_match_too() -> None:
@@ -60,7 +60,7 @@ def test_kicks_that_a_world_saw_are_counted_in_a_published_match_too() -> None:
         simulated.__class__ = Seeing
         return PublishedWorld(simulated, endpoints=free_endpoints())
 
-    match = Match(scenario, 1, world)
+    match = MatchLoop(scenario, 1, world)
     result = match.play()
     match.world.close()  # type: ignore[attr-defined]
     assert result.robots["blue 0"].kicks == result.ticks
@@ -81,7 +81,7 @@ def test_it_waits_for_the_clock_and_no_longer(monkeypatch: pytest.MonkeyPatch) -
     def world(scenario: object) -> PublishedWorld:
         return PublishedWorld(sim_world(scenario), endpoints=free_endpoints())  # type: ignore[arg-type]
 
-    match = Match(scenario, 1, world)
+    match = MatchLoop(scenario, 1, world)
     assert isinstance(match.world, World)
     match.play()
     match.world.close()  # type: ignore[attr-defined]

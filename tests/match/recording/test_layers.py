@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from robobt.match import Match, load_scenario
+from robobt.match import MatchLoop, load_scenario
 from robobt.match.recording import RecordingError, load_recording
 from robobt.match.recording.reader import parse_recording
 from robobt.match.results.results import MatchResult
@@ -20,7 +20,7 @@ def scenario() -> Scenario:
 
 
 def play(scenario: Scenario, path: Path, *layers: str) -> MatchResult:
-    with Match(scenario, 3, sim_world, path, layers=layers) as match:
+    with MatchLoop(scenario, 3, sim_world, path, layers=layers) as match:
         while match.tick():
             pass
         return match.result()
@@ -46,7 +46,7 @@ def test_a_recording_holds_the_layers_that_were_asked_for(scenario: Scenario, tm
 def test_what_viewers_look_at_is_not_recorded_with_it(scenario: Scenario, tmp_path: Path) -> None:
     usual, watched = tmp_path / "usual.robobt.arrows", tmp_path / "watched.robobt.arrows"
     play(scenario, usual, "targets")
-    with Match(scenario, 3, sim_world, watched, layers=["targets"]) as match:
+    with MatchLoop(scenario, 3, sim_world, watched, layers=["targets"]) as match:
         match.capture().look("a viewer", {"paths", "targets"})
         while match.tick():
             pass
@@ -56,7 +56,7 @@ def test_what_viewers_look_at_is_not_recorded_with_it(scenario: Scenario, tmp_pa
 
 def test_drawings_that_are_none_are_refused(scenario: Scenario, tmp_path: Path) -> None:
     path = tmp_path / "m.robobt.arrows"
-    with Match(scenario, 3, sim_world, path, layers=["evil"]) as match:
+    with MatchLoop(scenario, 3, sim_world, path, layers=["evil"]) as match:
         match.capture().field._wanted = ["evil"]
         match.capture().field._shapes = [["evil", "text", 0.0, float("nan"), "text"]]
         match.tick()

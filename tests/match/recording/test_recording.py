@@ -18,7 +18,7 @@ from py_trees.visitors import VisitorBase
 from pydantic import ValidationError
 
 from robobt.live.replay_html import replay_html
-from robobt.match import Match
+from robobt.match import MatchLoop
 from robobt.match.recording import (
     Event,
     RecordedNode,
@@ -620,7 +620,7 @@ def test_more_text_than_a_match_has_is_refused(path: Path, monkeypatch: pytest.M
 
 def test_what_skills_write_is_recorded_whenever_it_changes(path: Path) -> None:
     scenario = load_scenario("striker_vs_goalie").with_robot("blue 0", max_distance=None).lasting(1.5)
-    match = Match(scenario, 3, sim_world, path)
+    match = MatchLoop(scenario, 3, sim_world, path)
     striker = match.players[0]
     seen = []
     with match:
@@ -788,5 +788,5 @@ def test_a_very_deep_or_very_wide_tree_is_recorded_too(path: Path) -> None:
 @pytest.mark.integration
 def test_recording_changes_nothing_of_what_is_played(path: Path) -> None:
     scenario = load_scenario("three_v_three").lasting(4.0)
-    bare = Match(scenario, 5, sim_world).play()
-    assert Match(scenario, 5, sim_world, path).play().trace == bare.trace
+    bare = MatchLoop(scenario, 5, sim_world).play()
+    assert MatchLoop(scenario, 5, sim_world, path).play().trace == bare.trace

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from robobt.match import MatchResult, RobotResult, Scenario, run_trials, summarise
+from robobt.match import MatchResult, RobotResult, Scenario, run_trials_in, summarise
 from robobt.match.results.file import ResultsFile, ResultsFileError
 from robobt.match.results.teams import TeamResult
 from robobt.match.scenario.scenario import scenario_from
@@ -192,14 +192,14 @@ class TestResultsFile:
 
         path = tmp_path / "results.jsonl"
         scenario = self.scenario.lasting(0.1)
-        run_trials(scenario, sim_world, 1, out=path)
+        run_trials_in(scenario, sim_world, 1, out=path)
         with pytest.raises(ResultsFileError, match="holds results of world 'sim'"):
-            run_trials(scenario, Factory(), 1, out=path)
+            run_trials_in(scenario, Factory(), 1, out=path)
         path.unlink()
-        run_trials(scenario, Factory(), 1, out=path)
-        assert len(run_trials(scenario, Factory(), 2, out=path).results) == 2
+        run_trials_in(scenario, Factory(), 1, out=path)
+        assert len(run_trials_in(scenario, Factory(), 2, out=path).results) == 2
         with pytest.raises(ResultsFileError, match="holds results of world 'league://grsim'"):
-            run_trials(scenario, sim_world, 1, out=path)
+            run_trials_in(scenario, sim_world, 1, out=path)
 
     def test_another_tree_in_the_same_file_is_another_scenario(self, tmp_path: Path):
         tree, path = tmp_path / "tree.yaml", tmp_path / "results.jsonl"

@@ -3,7 +3,7 @@
 import pytest
 
 from robobt.config.resources import bundled_scenarios
-from robobt.match import load_scenario, play_match, run_trials, summarise
+from robobt.match import MatchLoop, load_scenario, run_trials_in, summarise
 from robobt.worlds import sim_world
 
 pytestmark = pytest.mark.integration
@@ -12,7 +12,7 @@ pytestmark = pytest.mark.integration
 @pytest.mark.parametrize("name", bundled_scenarios())
 def test_it_plays_without_a_tree_failing(name: str):
     scenario = load_scenario(name)
-    result = play_match(scenario.lasting(min(5.0, scenario.ends.time_limit)), scenario.seed, sim_world)
+    result = MatchLoop(scenario.lasting(min(5.0, scenario.ends.time_limit)), scenario.seed, sim_world).play()
     assert {robot: figures.first_error for robot, figures in result.robots.items() if figures.errors} == {}
 
 
@@ -20,17 +20,17 @@ def test_it_plays_without_a_tree_failing(name: str):
 def test_the_baseline_row_of_table_4(trial: int, printed: float):
     """Goals of 25 and the time to the ball, printed in the paper: 25 goals, time within 10 %."""
     scenario = load_scenario(f"table4_trial{trial}")
-    summary = summarise(run_trials(scenario, sim_world).results)
+    summary = summarise(run_trials_in(scenario, sim_world).results)
     assert summary.trials == 25
     assert summary.outcomes["goal_blue"].count == 25
     assert summary.robots["blue 0"].go_to_ball.mean == pytest.approx(printed, rel=0.10)
 
 
 def test_the_striker_scores_against_the_goalkeeper():
-    summary = summarise(run_trials(load_scenario("striker_vs_goalie"), sim_world, 20).results)
+    summary = summarise(run_trials_in(load_scenario("striker_vs_goalie"), sim_world, 20).results)
     assert summary.goals["blue"].trials.count >= 10
 
 
 def test_a_match_with_a_referee_is_the_same_match_again():
     scenario = load_scenario("six_v_six").lasting(5.0)
-    assert play_match(scenario, 3, sim_world).trace == play_match(scenario, 3, sim_world).trace
+    assert MatchLoop(scenario, 3, sim_world).play().trace == MatchLoop(scenario, 3, sim_world).play().trace

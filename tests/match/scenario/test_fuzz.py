@@ -13,7 +13,7 @@ import pytest
 
 from robobt.config.resources import bundled_scenarios
 from robobt.config.yaml import write_yaml
-from robobt.match import ScenarioError, load_scenario, play_match
+from robobt.match import MatchLoop, ScenarioError, load_scenario
 from robobt.worlds import sim_world
 from tests.match.scenario.mutation import mutated
 from tests.match.scripted import data
@@ -47,7 +47,7 @@ def outcome(path: Path) -> str:
     """ "played" or "refused"; any other exception is a finding and goes through."""
     try:
         scenario = load_scenario(path)
-        result = play_match(scenario.lasting(TICKS * scenario.period), scenario.seed, sim_world)
+        result = MatchLoop(scenario.lasting(TICKS * scenario.period), scenario.seed, sim_world).play()
     except ScenarioError as error:
         message = str(error)
         assert message.startswith(str(path)), message

@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from robobt.config.yaml import write_yaml
-from robobt.match import Scenario, ScenarioError, load_scenario, run_trials
+from robobt.match import Scenario, ScenarioError, load_scenario, run_trials_in
 from robobt.match.results.file import ResultsFileError
 from robobt.match.scenario.scenario import scenario_from
 from robobt.match.scenario.substitution import substituted
@@ -46,10 +46,10 @@ def test_the_rules_may_be_in_a_file_beside_the_scenario(
     scenario = load_scenario(str(tmp_path / "mine.yaml"))
     assert scripted_nodes(scenario)["blue 0"] == ["GoToBall"]
     out = tmp_path / "results.jsonl"
-    run_trials(scenario, PlainWorld, 1, out=out)
+    run_trials_in(scenario, PlainWorld, 1, out=out)
     (tmp_path / "rules.yaml").write_text('"*/GoToBall": SUCCESS\n')
     with pytest.raises(ResultsFileError, match="another version of the scenario"):
-        run_trials(scenario, PlainWorld, 1, out=out)
+        run_trials_in(scenario, PlainWorld, 1, out=out)
 
 
 @pytest.mark.parametrize(

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from robobt.config.yaml import write_yaml
-from robobt.match import ScenarioError, load_scenario, run_trials
+from robobt.match import ScenarioError, load_scenario, run_trials_in
 from robobt.match.runner import RunError
 from robobt.match.scenario.scenario import Scenario, scenario_from
 from robobt.plays import PLAYS
@@ -36,8 +36,8 @@ def scenario(folder: Path, children: str, play: str = "kicker.yaml") -> Path:
 @pytest.mark.integration
 def test_it_is_played_by_workers_too(tmp_path: Path) -> None:
     loaded = load_scenario(scenario(tmp_path, "SelectShot, KickToTarget"))
-    alone = run_trials(loaded, sim_world, trials=2)
-    shared = run_trials(loaded, sim_world, trials=2, workers=2)
+    alone = run_trials_in(loaded, sim_world, trials=2)
+    shared = run_trials_in(loaded, sim_world, trials=2, workers=2)
     assert [result.outcome for result in alone.results] == ["goal_blue"] * 2
     assert [result.trace for result in alone.results] == [result.trace for result in shared.results]
 
@@ -75,7 +75,7 @@ def test_a_play_that_gives_every_match_the_same_tree_is_refused(monkeypatch: pyt
     shared = Stop()
     monkeypatch.setitem(PLAYS._entries, "shared", lambda: shared)
     with pytest.raises(RunError, match="'shared' returns the same nodes each time"):
-        run_trials(with_robots("shared", 1), sim_world, trials=2)
+        run_trials_in(with_robots("shared", 1), sim_world, trials=2)
 
 
 def test_a_tree_is_built_once_where_a_scenario_is_loaded_and_played_once(
@@ -91,10 +91,10 @@ def test_a_tree_is_built_once_where_a_scenario_is_loaded_and_played_once(
     scenario = with_robots("counted", 2)
     assert len(built) == 2
     again = pickle.loads(pickle.dumps(scenario))
-    run_trials(scenario, sim_world, trials=1)
+    run_trials_in(scenario, sim_world, trials=1)
     assert len(built) == 2
-    run_trials(scenario, sim_world, trials=1)
-    run_trials(again, sim_world, trials=1)
+    run_trials_in(scenario, sim_world, trials=1)
+    run_trials_in(again, sim_world, trials=1)
     assert len(built) == 6
 
 
