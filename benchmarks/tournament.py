@@ -17,9 +17,9 @@ from robobt.tournament.entrants import read_entrant
 from robobt.tournament.fixtures import Fixture
 from robobt.tournament.job import Failure, Job
 from robobt.tournament.plan import Plan
-from robobt.tournament.play import play
+from robobt.tournament.play import play_tournament
 from robobt.tournament.played import PlayedMatch, SideResult
-from robobt.tournament.standings import standings
+from robobt.tournament.standings import standings_of
 from robobt.tournament.store import Store
 from robobt.world.game import Team
 
@@ -77,10 +77,10 @@ def tournament(
     with tempfile.TemporaryDirectory() as folder, Progress("results", 2 * plan.rounds) as progress:
         with plan.open_store(Path(folder) / "driver.sqlite") as store:
             begun = perf_counter()
-            played = play(plan, store, workers, on_match=lambda _: progress.advance(), job=MadeUp)
+            played = play_tournament(plan, store, workers, on_match=lambda _: progress.advance(), job=MadeUp)
             driver = perf_counter() - begun
         begun = perf_counter()
-        standings(played.matches, plan.names)
+        standings_of(played.matches, plan.names)
         summed = perf_counter() - begun
         path = Path(folder) / "alone.sqlite"
         with Store(path, {"seed": 1}) as store:

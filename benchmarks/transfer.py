@@ -20,7 +20,7 @@ from collections.abc import Mapping
 
 from robobt.cli.scenario_options import with_teams
 from robobt.match import MatchResult, load_scenario, run_trials_in
-from robobt.match.results.compare import Difference, compare
+from robobt.match.results.compare import Difference, compare_results
 from robobt.match.scenario.changes import changed
 from robobt.match.scenario.scenario import Scenario
 from robobt.models.find import read_fitting_model
@@ -70,7 +70,7 @@ def main(words: list[str] | None = None) -> None:
         }
         model = list(players)[-1]
         first = first or results[model]
-        found, moved = compare(results), compare({"first": first, "here": results[model]})
+        found, moved = compare_results(results), compare_results({"first": first, "here": results[model]})
         for label, one in found.items():
             ahead, drop = one.against_first, moved["here"].against_first
             told = "" if ahead is None or drop is None else f"{_points(ahead.scored)}, {_points(drop.scored)}"

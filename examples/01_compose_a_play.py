@@ -10,7 +10,7 @@ from robobt.skills import GoToBall, HasBall, KickToTarget, PickUpBall, SelectSho
 from robobt.tree import Behaviour, Selector, Sequence, tree_text
 
 
-@robobt.PLAYS.register("my_striker")
+@robobt.play
 def my_striker() -> Behaviour:
     """With the ball: choose a shot and take it. Without: go and get it."""
     score = Sequence("score", memory=False, children=[HasBall(), SelectShot(), KickToTarget()])

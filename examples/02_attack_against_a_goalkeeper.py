@@ -6,7 +6,7 @@
 
 # %%
 import robobt
-from robobt.skills.aim.raters import RATERS
+from robobt.skills import RATERS
 
 TRIALS = 40
 

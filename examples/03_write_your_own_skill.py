@@ -9,10 +9,9 @@
 from math import atan2, cos, hypot, pi, sin
 
 import robobt
-from robobt.motion.pilot import drive
-from robobt.skills import GoToBall, KickToTarget, PickUpBall, SelectShot
-from robobt.skills.base import Skill, skill
-from robobt.skills.store import Store
+from robobt import Skill, skill
+from robobt.motion import drive
+from robobt.skills import GoToBall, KickToTarget, PickUpBall, SelectShot, Store
 from robobt.tree import Behaviour, Sequence, Status, TreeRunner
 from robobt.world import DIVISION_B
 

@@ -7,18 +7,13 @@
 
 # %%
 import shutil
-from pathlib import Path
 
 import robobt
-from robobt.learning.training.export_run import export_run
-from robobt.learning.training.settings import load_settings
-from robobt.learning.training.train import train
 
 STEPS = 160_000
 
 shutil.rmtree("out/runs/example", ignore_errors=True)
-settings = load_settings("go_to_ball", "fast", {"steps": STEPS, "evaluation.held_out": 200})
-result = train(settings, "out/runs/example")
+result = robobt.train("go_to_ball", steps=STEPS, out="out/runs/example", changes={"evaluation.held_out": 200})
 held_out = result.figures["held_out"]
 print(f"held out: {held_out['successes']} of {held_out['starts']} balls reached")
 
@@ -27,7 +22,7 @@ print(f"held out: {held_out['successes']} of {held_out['starts']} balls reached"
 # and answers.
 
 # %%
-(model,) = export_run(Path("out/runs/example"), "example", Path("out/models"))
+model = result.export("example", out="out/models")
 print(f"written: {model}")
 
 # %% [markdown]

@@ -6,9 +6,7 @@
 
 # %%
 import robobt
-from robobt.shots.collect import CollectionSettings, collect_shots
-from robobt.shots.data import goals, read_shots, shot_inputs
-from robobt.shots.predict import best_predictor
+from robobt.shots import CollectionSettings, best_predictor, collect_shots, goals, read_shots, shot_inputs
 from robobt.statistics import wilson_interval
 
 SHOTS = 600

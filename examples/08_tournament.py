@@ -7,10 +7,7 @@
 
 # %%
 import robobt
-from robobt.tournament.entrants import read_entrant
-from robobt.tournament.plan import Plan
-from robobt.tournament.play import play
-from robobt.tournament.standings import standings
+from robobt.tournament import Plan, play_tournament, read_entrant, standings_of
 
 ROUNDS = 5
 SECONDS = 20.0
@@ -22,7 +19,7 @@ plan = Plan(
     seed=1,
 )
 with plan.open_store("out/tutorial.sqlite") as store:
-    found = standings(play(plan, store).matches, plan.names)
+    found = standings_of(play_tournament(plan, store).matches, plan.names)
 
 # %% [markdown]
 # A rating is a strength on the Elo scale with its 95 % interval: where the intervals of two teams overlap

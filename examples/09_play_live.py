@@ -7,8 +7,7 @@
 
 # %%
 import robobt
-from robobt.live.server import Server
-from robobt.live.session import Live
+from robobt.live import Live, Server
 
 SECONDS = 60.0
 SPEED = 1.0

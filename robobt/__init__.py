@@ -13,7 +13,7 @@ Skills are in :mod:`robobt.skills`, nodes in :mod:`robobt.tree`; everything else
 in ``__init__.pyi``.
 """
 
-from importlib import import_module
+from robobt.config.lazy import lazily
 
 __version__ = "0.1.0"
 
@@ -25,29 +25,33 @@ _HOMES = {
     "PLAYS": "plays",
     "RobobtError": "config.errors",
     "RobotCommand": "world",
+    "RobotId": "world",
     "RobotState": "world",
     "Run": "match",
     "Scenario": "match",
     "ScenarioError": "match",
+    "Selector": "tree",
+    "Sequence": "tree",
+    "Skill": "skills",
+    "Status": "tree",
     "Summary": "match",
+    "Team": "world",
     "World": "world",
+    "compare": "worlds",
     "load_policy": "models.policy",
     "load_scenario": "match",
+    "play": "plays",
     "play_match": "worlds",
     "run_trials": "worlds",
     "sim_world": "worlds",
+    "skill": "skills",
+    "train": "learning.trained",
     "world_from": "worlds",
 }
 
 __all__ = ["__version__", *_HOMES]
 
-
-def __getattr__(name: str) -> object:
-    if name not in _HOMES:
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    value = getattr(import_module(f"{__name__}.{_HOMES[name]}"), name)
-    globals()[name] = value
-    return value
+__getattr__, _names = lazily(__name__, _HOMES)
 
 
 def __dir__() -> list[str]:

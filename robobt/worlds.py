@@ -14,6 +14,7 @@ from robobt.config.errors import message_of
 from robobt.config.validation import first_problem
 from robobt.match.loop import MatchLoop, WorldFactory
 from robobt.match.refereeing import RefereeFactory, own_referee
+from robobt.match.results.compare import Compared, compare_results
 from robobt.match.results.results import MatchResult
 from robobt.match.runner import Run, run_trials_in
 from robobt.match.scenario.scenario import Scenario
@@ -171,6 +172,48 @@ def run_trials(
     """
     factory = _factory(world)
     return run_trials_in(scenario, factory, trials, workers, seed, out, record, on_result, referee)
+
+
+def compare(
+    variants: Mapping[str, Scenario],
+    trials: int | None = None,
+    *,
+    world: str | WorldFactory = SIM,
+    seed: int | None = None,
+    workers: int = 1,
+    referee: RefereeFactory = own_referee,
+) -> dict[str, Compared]:
+    """Play variants of a scenario from the same starts with the same seeds, and compare them trial by trial.
+
+    Errors are those of :func:`run_trials`.
+
+    Args:
+        variants: the scenarios by what they are called; the others are compared with the first.
+        trials: number of trials of each; the first scenario's by default.
+        world: an address as for :func:`world_from`, or a factory.
+        seed: seed from which the trials' seeds follow; the first scenario's by default.
+        workers: number of processes; one is this process itself.
+        referee: makes the referee of each trial; by default the scenario's own.
+
+    Returns:
+        Each variant's figures by its name, with the paired difference to the first.
+
+    Raises:
+        ValueError: there are fewer than two variants.
+        KeyboardInterrupt: it was stopped (Ctrl-C) before the last trial.
+    """
+    if len(variants) < 2:
+        raise ValueError(f"a comparison needs two variants, not {len(variants)}")
+    first = next(iter(variants.values()))
+    trials = first.trials if trials is None else trials
+    seed = first.seed if seed is None else seed
+    results = {}
+    for label, scenario in variants.items():
+        run = run_trials(scenario, trials, world=world, seed=seed, workers=workers, referee=referee)
+        if run.interrupted:
+            raise KeyboardInterrupt
+        results[label] = run.results
+    return compare_results(results)
 
 
 def _factory(world: str | WorldFactory) -> WorldFactory:

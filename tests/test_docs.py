@@ -107,6 +107,33 @@ def test_what_its_python_imports_is_there(page: str) -> None:
                     assert hasattr(module, name.name), f"{node.module} has no {name.name}"
 
 
+def shown_to_users() -> dict[str, str]:
+    """The code of the examples and of the blocks in README and pages, by where it stands."""
+    found = {
+        f"{page}, block {number}": block
+        for page in PAGES
+        for number, block in enumerate(blocks(page, "python"), 1)
+    }
+    return found | {path.name: path.read_text() for path in sorted((ROOT / "examples").glob("*.py"))}
+
+
+def imported(code: str) -> set[str]:
+    """The modules that code imports from, wherever in it."""
+    found: set[str] = set()
+    for node in ast.walk(ast.parse(code)):
+        if isinstance(node, ast.ImportFrom):
+            found.add(str(node.module))
+        elif isinstance(node, ast.Import):
+            found.update(name.name for name in node.names)
+    return found
+
+
+@pytest.mark.parametrize("place", shown_to_users())
+def test_users_import_from_robobt_or_one_of_its_rooms(place: str) -> None:
+    deep = {name for name in imported(shown_to_users()[place]) if re.fullmatch(r"robobt(\.\w+){2,}", name)}
+    assert not deep, "let the room export what is needed from there"
+
+
 @pytest.mark.parametrize("page", PAGES)
 def test_its_links_lead_somewhere(page: str) -> None:
     for target in re.findall(r"\]\(([^)\s]+)\)", FENCED.sub("", PAGES[page].read_text())):

@@ -54,12 +54,12 @@ DOCS = Path(__file__).parent.parent / "docs"
 
 REPLACED = {
     "engines": {
-        "from robobt.engines.cluster import RayEngine\n": "",
+        "RayEngine, ": "",
         'with RayEngine("ray://head:10001") as engine, running_on(engine):': "if True:",
         "10_000, workers=engine.workers": "2",
     },
     "league": {'world="league://grsim"': 'world="sim"', "trials=10": "trials=1"},
-    "learning": {'{"seed": 3}': "{'steps': 2000, 'evaluation.held_out': 20, 'evaluation.starts': 20}"},
+    "learning": {"seed=3": "steps=2000, changes={'evaluation.held_out': 20, 'evaluation.starts': 20}"},
     "live": {"def on_running": "class Drawing(Skill):\n  gap = 0.5\n  def on_running"},
     "scenarios": {"trials=20": "trials=2"},
     "team": {"...": "Stop()"},

@@ -10,7 +10,9 @@ import pytest
 from typer.testing import CliRunner
 
 from robobt.match import load_scenario
+from robobt.plays import PLAYS
 from tests.programs import PROGRAMS, program_and_words
+from tests.registries import temporarily
 
 ROOT = Path(__file__).parent.parent
 README, TOUR = (
@@ -58,6 +60,7 @@ def test_the_robobt_commands_run_one_after_the_other(tmp_path: Path, monkeypatch
 def test_the_python_in_it_runs_and_plays(capsys: pytest.CaptureFixture[str]) -> None:
     blocks = [block for kind, block in README if kind == "python"]
     scope: dict[str, object] = {}
-    exec("".join(blocks).replace('"my_striker"', '"readme_striker"'), scope)
+    with temporarily(PLAYS):
+        exec("".join(blocks), scope)
     assert scope["my_striker"]().name == "my striker"  # type: ignore[operator]
     assert "rate=" in capsys.readouterr().out

@@ -98,7 +98,7 @@ def compare(
     and only_first (trials in which blue scores in one of both only), p (McNemar,
     exact) and holm (p corrected for the number of variants).
     """
-    from robobt.match.results.compare import compare as compared
+    from robobt.match.results.compare import compare_results
 
     import_files(imports)
     base = scenario_of(scenario, settings)
@@ -115,7 +115,7 @@ def compare(
         for label, (variant, address) in variants.items():
             file = None if out is None else out / _file_name(label)
             results[label] = _played(variant, address, count, used, workers, file, progress.advance)
-    found = compared(results)
+    found = compare_results(results)
     if as_json:
         figures = {label: asdict(one) for label, one in found.items()}
         print_json({"scenario": base.name, "seed": used, "trials": count, "variants": figures})

@@ -1,1 +1,16 @@
 """Where work runs: in this process, in worker processes, on a Ray cluster."""
+
+from typing import TYPE_CHECKING
+
+from robobt.config.lazy import lazily
+
+_HOMES = {
+    "RayEngine": "cluster",
+    "running_on": "run",
+}
+
+if TYPE_CHECKING:
+    from robobt.engines.cluster import RayEngine as RayEngine
+    from robobt.engines.run import running_on as running_on
+else:
+    __getattr__, __dir__ = lazily(__name__, _HOMES)

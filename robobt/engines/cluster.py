@@ -99,7 +99,7 @@ class RayEngine(Closing):
     ) -> Generator[ResultT, None, None]:
         """Yield the result of every task, in the order in which they finish.
 
-        Arguments and errors are those of :func:`robobt.engines.run.run_tasks`.
+        Arguments and errors are as for :func:`robobt.engines.run.run_tasks`.
         """
         ray = self._ray
         packed = pickle.dumps((setup, work.packed()))

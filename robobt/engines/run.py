@@ -38,7 +38,7 @@ _engine: ContextVar[Engine | None] = ContextVar("engine", default=None)
 
 @contextmanager
 def running_on(engine: Engine) -> Iterator[None]:
-    """Run what is done in several processes on this engine, inside the block."""
+    """Return a context in which what is done in several processes runs on ``engine``."""
     token = _engine.set(engine)
     try:
         yield

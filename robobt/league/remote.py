@@ -129,15 +129,15 @@ class TeamConnection(_Connection):
         super().__init__(registration, ControllerToTeam, (host, port), key)
 
     def keeper(self, number: int) -> None:
-        """Name another goalkeeper; refused while the ball is in play or being prepared for it."""
+        """Name robot ``number`` goalkeeper; refused while the ball is in play or being prepared for it."""
         self._tell(TeamToController(desired_keeper=number))
 
     def substitute(self, wanted: bool = True) -> None:
-        """Ask for the next chance to exchange robots, or take that back."""
+        """Ask for the next chance to exchange robots, or take that back unless ``wanted``."""
         self._tell(TeamToController(substitute_bot=wanted))
 
     def advantage(self, play_on: bool) -> None:
-        """Say whether play goes on although the opponents have too many robots; holds until it is changed."""
+        """Say whether to ``play_on`` when the opponents have too many robots; holds until it is changed."""
         self._tell(TeamToController(advantage_choice="CONTINUE" if play_on else "STOP"))
 
     def ping(self) -> None:
@@ -191,31 +191,43 @@ class RemoteControl(_Connection):
         return self._asked(RemoteControlToController(request="PING"))
 
     def keeper(self, number: int) -> RemoteControlTeamState:
-        """Name another goalkeeper; refused while the ball is in play in the own half."""
+        """Name the robot ``number`` goalkeeper; refused while the ball is in play in the own half.
+
+        Returns the team's state.
+        """
         return self._asked(RemoteControlToController(desired_keeper=number))
 
     def substitute(self, wanted: bool = True) -> RemoteControlTeamState:
-        """Ask for the next chance to exchange robots, or take that back."""
+        """Ask for the next chance to exchange robots, or take that back unless ``wanted``.
+
+        Returns the team's state.
+        """
         return self._asked(RemoteControlToController(request_robot_substitution=wanted))
 
     def timeout(self, wanted: bool = True) -> RemoteControlTeamState:
-        """Ask for a time-out at the next stop, or take that back."""
+        """Ask for a time-out at the next stop, or take that back unless ``wanted``.
+
+        Returns the team's state.
+        """
         return self._asked(RemoteControlToController(request_timeout=wanted))
 
     def end_timeout(self) -> RemoteControlTeamState:
-        """End the own time-out."""
+        """End the own time-out and return the team's state."""
         return self._asked(RemoteControlToController(request="STOP_TIMEOUT"))
 
     def forced_timeout(self, wanted: bool = True) -> RemoteControlTeamState:
-        """Ask for play to be stopped within 10 s, which costs a yellow card, or take that back."""
+        """Ask for a stop within 10 s, at the cost of a yellow card, or take that back unless ``wanted``.
+
+        Returns the team's state.
+        """
         return self._asked(RemoteControlToController(request_emergency_stop=wanted))
 
     def challenge(self) -> RemoteControlTeamState:
-        """Raise a challenge flag."""
+        """Raise a challenge flag and return the team's state."""
         return self._asked(RemoteControlToController(request="CHALLENGE_FLAG"))
 
     def give_up_placement(self) -> RemoteControlTeamState:
-        """Give up placing the ball."""
+        """Give up placing the ball and return the team's state."""
         return self._asked(RemoteControlToController(request="FAIL_BALLPLACEMENT"))
 
     def _asked(self, message: RemoteControlToController) -> RemoteControlTeamState:

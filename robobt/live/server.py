@@ -105,7 +105,7 @@ class Server:
         sys.setswitchinterval(self._usual_switch)
 
     def show(self, stream: Stream) -> None:
-        """Serve another match from now on."""
+        """Serve another match from now on, that of ``stream``."""
         self.audience.stream = stream
 
     def tell(self, **state: Any) -> None:
@@ -115,7 +115,7 @@ class Server:
             self.audience.state = {**known, **state}
 
     def say(self, text: str) -> None:
-        """Tell the viewers something, for a moment."""
+        """Show the viewers a ``text`` for a moment."""
         self._said += 1
         self.tell(said=[self._said, text])
 

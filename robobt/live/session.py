@@ -92,7 +92,7 @@ class Live:
         self._ended = True
 
     def play(self, match: MatchLoop) -> bool:
-        """Play a match; whether it came to its end, which a viewer may not have wanted to see.
+        """Play a match and return whether it came to its end, which a viewer may not have wanted to see.
 
         The match is left open.
         """
@@ -139,7 +139,7 @@ class Live:
         return hands
 
     def tick(self, match: MatchLoop) -> bool:
-        """Play one tick when it is due and viewers want it; False when it is over or not wanted."""
+        """Play one tick of ``match`` when it is due; return False when it is over or no viewer wants it."""
         # Whether anybody wants more than that it is played, which is rare: as little as can be is looked at.
         wanted = (
             self._attentive
@@ -157,7 +157,10 @@ class Live:
         return True
 
     def count_down(self, match: MatchLoop, seconds: float) -> None:
-        """Show the start and count down once somebody is there to drive, from anew whenever nobody is."""
+        """Show the start of ``match`` and count down ``seconds`` once somebody is there to drive.
+
+        It begins anew whenever nobody is.
+        """
         assert self._hands is not None
         assert self._stream is not None
         truth = match.world.truth().packed()
@@ -182,7 +185,7 @@ class Live:
         self._reset = None
 
     def linger(self, match: MatchLoop, seconds: float) -> None:
-        """Show a match that is over for a while."""
+        """Go on showing a ``match`` that is over for ``seconds``."""
         end = self._clock() + seconds
         while self._clock() < end and not self._ended:
             self._idle(match)

@@ -1,5 +1,8 @@
 """Scenarios, matches between trees, their results and recordings."""
 
+from typing import TYPE_CHECKING
+
+from robobt.config.lazy import lazily
 from robobt.match.ends import Outcome as Outcome
 from robobt.match.loop import MatchLoop as MatchLoop
 from robobt.match.results.results import MatchResult as MatchResult
@@ -12,3 +15,16 @@ from robobt.match.runner import run_trials_in as run_trials_in
 from robobt.match.scenario.scenario import Scenario as Scenario
 from robobt.match.scenario.scenario import ScenarioError as ScenarioError
 from robobt.match.scenario.scenario import load_scenario as load_scenario
+
+_HOMES = {
+    "Recording": "recording",
+    "check_regression_case": "regression_cases",
+    "load_recording": "recording",
+}
+
+if TYPE_CHECKING:
+    from robobt.match.recording import Recording as Recording
+    from robobt.match.recording import load_recording as load_recording
+    from robobt.match.regression_cases import check_regression_case as check_regression_case
+else:
+    __getattr__, __dir__ = lazily(__name__, _HOMES)

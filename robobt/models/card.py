@@ -40,7 +40,7 @@ class ObservationCard(Settings):
 
     @classmethod
     def of(cls, spec: ObservationSpec) -> ObservationCard:
-        """Return the card of an observation as it is defined now."""
+        """Return the card of an observation whose definition now is ``spec``."""
         entries = tuple([f"{entry.name} [{entry.unit}]" for entry in spec.entries])
         return cls(name=spec.name, version=spec.version, size=spec.size, features=entries)
 

@@ -3,6 +3,9 @@
 Importing this package enters every one of them in :data:`PLAYS`.
 """
 
+from typing import TYPE_CHECKING
+
+from robobt.config.lazy import lazily
 from robobt.plays.attack_expected import attack_expected as attack_expected
 from robobt.plays.attack_learned import attack_learned as attack_learned
 from robobt.plays.attack_main import attack_main as attack_main
@@ -10,6 +13,7 @@ from robobt.plays.attack_nn import attack_nn as attack_nn
 from robobt.plays.attack_support import attack_support as attack_support
 from robobt.plays.base import PLAYS as PLAYS
 from robobt.plays.base import Play as Play
+from robobt.plays.base import play as play
 from robobt.plays.baselines.team_2026_11 import defender as defender
 from robobt.plays.baselines.team_2026_11 import defender_2026_11 as defender_2026_11
 from robobt.plays.baselines.team_2026_11 import field_player as field_player
@@ -24,3 +28,18 @@ from robobt.plays.stand_still import stand_still as stand_still
 from robobt.plays.take_shot import take_shot as take_shot
 from robobt.plays.team_keeper import team_keeper as team_keeper
 from robobt.plays.team_player import team_player as team_player
+
+_HOMES = {
+    "import_file": "python_files",
+    "load_play": "files",
+    "tree_xml": "files",
+    "tree_yaml": "files",
+}
+
+if TYPE_CHECKING:
+    from robobt.plays.files import load_play as load_play
+    from robobt.plays.files import tree_xml as tree_xml
+    from robobt.plays.files import tree_yaml as tree_yaml
+    from robobt.plays.python_files import import_file as import_file
+else:
+    __getattr__, __dir__ = lazily(__name__, _HOMES)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import TypeVar, overload
 
 from robobt.tree import Behaviour, Registry, Selector, Sequence
 
@@ -11,6 +12,31 @@ Play = Callable[..., Behaviour]
 
 PLAYS: Registry[Play] = Registry("play", group="robobt.plays", fits=callable)
 """Every play by name."""
+
+PlayT = TypeVar("PlayT", bound=Play)
+
+
+@overload
+def play(name: PlayT, /) -> PlayT: ...
+@overload
+def play(name: str = "", /) -> Callable[[PlayT], PlayT]: ...
+def play(name: PlayT | str = "", /) -> PlayT | Callable[[PlayT], PlayT]:
+    """Enter a function that returns a tree as a play, and return it; a decorator.
+
+    Args:
+        name: of the play; the function's own where there is none, as in ``@play``.
+
+    Raises:
+        ValueError: another play has that name.
+    """
+    if not isinstance(name, str):
+        return play()(name)
+
+    def enter(function: PlayT) -> PlayT:
+        PLAYS.register(name or function.__name__)(function)
+        return function
+
+    return enter
 
 
 def when(name: str, *steps: Behaviour) -> Behaviour:

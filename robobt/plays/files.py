@@ -58,6 +58,9 @@ VOCABULARY = Vocabulary(
 def load_play(path: str | Path) -> FilePlay:
     """Load a play from a file, to be called like those of :data:`~robobt.plays.base.PLAYS`.
 
+    Args:
+        path: a file that ends in .yaml, .yml, .xml or .btproj.
+
     Raises:
         TreeFileError: one line that names the file, the line and what is wrong.
     """
@@ -163,7 +166,11 @@ def rename_play(name: str, rename: Callable[[str], str]) -> str:
 
 
 def tree_yaml(root: Behaviour, name: str) -> str:
-    """Write a tree as the YAML of a play.
+    """Return a tree as the YAML of a play.
+
+    Args:
+        root: of the tree.
+        name: of the play.
 
     Raises:
         ValueError: a node is not registered, or has a parameter that is not plain data.
@@ -172,7 +179,11 @@ def tree_yaml(root: Behaviour, name: str) -> str:
 
 
 def tree_xml(root: Behaviour, name: str) -> str:
-    """Write a tree as the XML of BehaviorTree.CPP 4, with all skills in Groot2's palette.
+    """Return a tree as the XML of BehaviorTree.CPP 4, with all skills in Groot2's palette.
+
+    Args:
+        root: of the tree.
+        name: of the play.
 
     Raises:
         ValueError: as :func:`tree_yaml`, or XML cannot express it.

@@ -28,7 +28,9 @@ _imported: dict[Path, ModuleType] = {}
 
 
 def import_file(path: str | Path) -> ModuleType:
-    """Run a ``.py`` file, so that the plays, skills, raters and policies it registers are there.
+    """Run the ``.py`` file at ``path`` and return it as a module.
+
+    The plays, skills, raters and policies that it registers are there then.
 
     A file is run once; asked for again it is the same module. Modules that lie
     beside it can be imported by it. What it prints goes to stderr. When it raises, nothing of what it has

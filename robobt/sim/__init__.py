@@ -1,5 +1,8 @@
 """The pymunk simulator: settings with presets, many arenas at once, and one as a World."""
 
+from typing import TYPE_CHECKING
+
+from robobt.config.lazy import lazily
 from robobt.sim.arenas import Arenas as Arenas
 from robobt.sim.settings import PRESETS as PRESETS
 from robobt.sim.settings import REALISM as REALISM
@@ -7,3 +10,12 @@ from robobt.sim.settings import SimSettings as SimSettings
 from robobt.sim.settings import preset as preset
 from robobt.sim.settings import settings_from as settings_from
 from robobt.sim.world import SimWorld as SimWorld
+
+_HOMES = {
+    "COMMAND": "records",
+}
+
+if TYPE_CHECKING:
+    from robobt.sim.records import COMMAND as COMMAND
+else:
+    __getattr__, __dir__ = lazily(__name__, _HOMES)

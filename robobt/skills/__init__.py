@@ -10,6 +10,8 @@ from robobt.skills.aim.aim_upfield import AimUpfield as AimUpfield
 from robobt.skills.aim.draw_goalkeeper import DrawGoalkeeper as DrawGoalkeeper
 from robobt.skills.aim.pass_is_open import PassIsOpen as PassIsOpen
 from robobt.skills.aim.pass_is_steady import PassIsSteady as PassIsSteady
+from robobt.skills.aim.raters import RATERS as RATERS
+from robobt.skills.aim.raters import ShotRater as ShotRater
 from robobt.skills.aim.select_clearance import SelectClearance as SelectClearance
 from robobt.skills.aim.select_pass import SelectPass as SelectPass
 from robobt.skills.aim.select_shot import SelectShot as SelectShot

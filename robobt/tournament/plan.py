@@ -91,7 +91,7 @@ class Plan:
         return list(fixtures(self.pairings, self.rounds, self.first_round))
 
     def open_store(self, path: Path, **besides: str) -> Store:
-        """Open its store, or make it, with the entrants entered.
+        """Open its store, or make it, and return it with the entrants entered.
 
         Args:
             path: the file.

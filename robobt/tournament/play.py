@@ -50,7 +50,7 @@ class Played:
     interrupted: bool = False
 
 
-def play(
+def play_tournament(
     plan: Plan,
     store: Store,
     workers: int = 0,
@@ -63,7 +63,7 @@ def play(
     tell_outputs: bool = True,
     job: type[Job] = Job,
 ) -> Played:
-    """Play what is missing in the store.
+    """Play what is missing in the store, and return all that is there.
 
     A match that cannot be played, because of a fault of nobody's plays, is left out; one whose process a
     play ends, or holds up for ever, twice, is lost by the side whose play it was. Several programs may do

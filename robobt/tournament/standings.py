@@ -107,10 +107,10 @@ class Standings:
         return found
 
 
-def standings(
+def standings_of(
     matches: Sequence[PlayedMatch], names: Sequence[str], reference: str | None = None
 ) -> Standings:
-    """Sum up a tournament.
+    """Return the table of a tournament: each entrant's figures and rating, and each encounter.
 
     Matches that repeat another one move for move count once for ratings, intervals and
     tests: they tell nothing new.

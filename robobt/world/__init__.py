@@ -1,5 +1,8 @@
 """What is on a field: geometry, states, commands, the state of the game, observations."""
 
+from typing import TYPE_CHECKING
+
+from robobt.config.lazy import lazily
 from robobt.world.command import KickTrigger as KickTrigger
 from robobt.world.command import RobotCommand as RobotCommand
 from robobt.world.field import DIVISION_A as DIVISION_A
@@ -22,3 +25,24 @@ from robobt.world.state import BallState as BallState
 from robobt.world.state import Frame as Frame
 from robobt.world.state import RobotId as RobotId
 from robobt.world.state import RobotState as RobotState
+
+_HOMES = {
+    "GO_TO_BALL": "features",
+    "Seen": "observation",
+    "direction": "geometry",
+    "distance": "geometry",
+    "entries": "observation",
+    "own_observation": "observation",
+    "wrap_angle": "geometry",
+}
+
+if TYPE_CHECKING:
+    from robobt.world.features import GO_TO_BALL as GO_TO_BALL
+    from robobt.world.geometry import direction as direction
+    from robobt.world.geometry import distance as distance
+    from robobt.world.geometry import wrap_angle as wrap_angle
+    from robobt.world.observation import Seen as Seen
+    from robobt.world.observation import entries as entries
+    from robobt.world.observation import own_observation as own_observation
+else:
+    __getattr__, __dir__ = lazily(__name__, _HOMES)

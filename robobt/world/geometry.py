@@ -20,7 +20,7 @@ _TAU = 2.0 * pi
 
 @compilable
 def wrap_angle(angle: float) -> float:
-    """Return the same direction in (-pi, pi]."""
+    """Return the direction of an ``angle`` in (-pi, pi] [rad]."""
     wrapped = angle % _TAU
     return wrapped - _TAU if wrapped > pi else wrapped
 
@@ -39,7 +39,7 @@ def direction(origin: Point, target: Point) -> float:
 
 @compilable
 def distance(a: Point, b: Point) -> float:
-    """Return the Euclidean distance [m]."""
+    """Return the Euclidean distance between ``a`` and ``b`` [m]."""
     return hypot(b[0] - a[0], b[1] - a[1])
 
 

@@ -55,7 +55,7 @@ class Seen:
         return self.robots[:, self.own :]
 
     def in_frame_of_me(self, x: FloatArray, y: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Return vectors (n,) of the field as those who observe see them: ahead, and to their left."""
+        """Return vectors ``x``, ``y`` (n,) of the field as who observes sees them: ahead, and to its left."""
         c, s = np.cos(self.me["heading"]), np.sin(self.me["heading"])
         return c * x + s * y, c * y - s * x
 
@@ -138,10 +138,10 @@ class Observation(ObservationSpec):
 
 
 OWN_OBSERVATIONS: dict[str, Observation] = {}
-"""Those that :func:`observation` has registered, by their names."""
+"""Those that :func:`own_observation` has registered, by their names."""
 
 
-def observation(
+def own_observation(
     name: str, version: int, *vector: Entry
 ) -> Callable[[Callable[[Seen], FloatArray]], Observation]:
     """Return a decorator that registers a function as the one that makes an observation of one's own.

@@ -11,7 +11,7 @@ import pytest
 from robobt.engines.cluster import RayEngine
 from robobt.engines.run import running_on
 from robobt.match import MatchResult, load_scenario, run_trials_in
-from robobt.tournament.play import play
+from robobt.tournament.play import play_tournament
 from robobt.tournament.played import MAY_DIFFER
 from robobt.worlds import sim_world
 from tests.campaign import count
@@ -65,9 +65,9 @@ def test_a_tournament_is_the_same_on_ray(cluster: Any, tmp_path: Path) -> None:
         with RayEngine("ray") as engine, plan(2).open_store(tmp_path / name) as store:
             if name == "ray":
                 with running_on(engine):
-                    played = play(plan(2), store, 3)
+                    played = play_tournament(plan(2), store, 3)
             else:
-                played = play(plan(2), store, 2)
+                played = play_tournament(plan(2), store, 2)
         rows = [match.row() for match in played.matches]
         stores.append([{key: row[key] for key in row if key not in MAY_DIFFER} for row in rows])
     assert stores[0] == stores[1]

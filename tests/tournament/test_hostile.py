@@ -12,7 +12,7 @@ import pytest
 from robobt.plays import PLAYS, python_files
 from robobt.tournament.entrants import read_entrant
 from robobt.tournament.fixtures import Fixture
-from robobt.tournament.play import Played, play
+from robobt.tournament.play import Played, play_tournament
 from tests.registries import temporarily
 from tests.tournament.made_up import plan, runner
 
@@ -74,7 +74,7 @@ def tournament(path: Path, *what: str, rounds: int = 1, workers: int = 2, **opti
     teams = [read_entrant("hostile", {"what": name}, name) for name in what]
     against = plan(rounds, entrants=(runner(1.0), *teams), against="at 1", silence=8.0)
     with against.open_store(path / "night.sqlite") as store:
-        return play(against, store, workers, **options)
+        return play_tournament(against, store, workers, **options)
 
 
 @pytest.mark.usefixtures("_hostile")

@@ -14,7 +14,7 @@ from robobt.tournament import play as play_module
 from robobt.tournament.claims import Claims
 from robobt.tournament.fixtures import Fixture
 from robobt.tournament.plan import Plan, TournamentError
-from robobt.tournament.play import Played, play
+from robobt.tournament.play import Played, play_tournament
 from robobt.tournament.played import MAY_DIFFER, PlayedMatch
 from robobt.tournament.recordings import Keep, Recordings
 from tests.match.scripted import PlainWorld
@@ -32,7 +32,7 @@ def rows(matches: list[PlayedMatch]) -> list[dict[str, Any]]:
 
 def run(what: Plan, path: Path, workers: int = 0, **options: Any) -> Played:
     with what.open_store(path) as store:
-        return play(what, store, workers, **options)
+        return play_tournament(what, store, workers, **options)
 
 
 def test_every_pairing_is_played_from_both_sides_with_one_seed(tmp_path: Path) -> None:

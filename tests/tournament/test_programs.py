@@ -13,7 +13,7 @@ from robobt.match import load_scenario
 from robobt.match.recording import load_recording
 from robobt.tournament.entrants import Entrant, EntrantError, read_entrant
 from robobt.tournament.plan import Plan
-from robobt.tournament.play import Played, play
+from robobt.tournament.play import Played, play_tournament
 from robobt.tournament.played import PlayedMatch
 from robobt.tournament.recordings import Keep, Recordings
 from robobt.world.game import Team
@@ -53,7 +53,7 @@ def run(tmp_path: Path, *teams: Entrant, workers: int = 0, seconds: float = 3.0,
     given = {"scenario": drill(seconds), "entrants": (runner(0.0), *teams), "against": "at 0"}
     what = plan(1, **given, speed=3.0)
     with what.open_store(tmp_path / "night.sqlite") as store:
-        return play(what, store, workers, **options)
+        return play_tournament(what, store, workers, **options)
 
 
 def left(folder: Path) -> list[str]:
@@ -94,7 +94,7 @@ def test_a_program_that_may_stay_is_started_once_for_either_side(
     teams = (runner(0.0), program(tmp_path, name, port=port, more="\n  ".join(["stays: true", *more])))
     what = plan(2, scenario=drill(1.0), entrants=teams, against="at 0", speed=3.0)
     with what.open_store(tmp_path / "night.sqlite") as store:
-        found = play(what, store, workers)
+        found = play_tournament(what, store, workers)
     assert [match.forfeited_by for match in found.matches] == [None] * 4
     assert len(list((tmp_path / "night.output").glob("*/*.txt"))) == 2
     soon(lambda: not left(tmp_path))
@@ -130,7 +130,7 @@ def twice(tmp_path: Path, what: Plan) -> list[list[PlayedMatch]]:
     found = []
     for name in ("once", "again"):
         with what.open_store(tmp_path / f"{name}.sqlite") as store:
-            found.append(play(what, store, 2).matches)
+            found.append(play_tournament(what, store, 2).matches)
     for once, again in zip(*found, strict=True):
         assert once.forfeited_by is again.forfeited_by is None, (once.sides, again.sides)
         assert (once.trace, once.ticks) == (again.trace, again.ticks)
@@ -166,7 +166,7 @@ def test_programs_side_by_side_never_meet(tmp_path: Path) -> None:
     teams = [program(tmp_path, name) for name in ("drives", "twice")]
     what = plan(2, entrants=tuple(teams), speed=3.0)
     with what.open_store(tmp_path / "night.sqlite") as store:
-        found = play(what, store, 2)
+        found = play_tournament(what, store, 2)
     assert [match.forfeited_by for match in found.matches] == [None] * 4
     assert not left(tmp_path)
 

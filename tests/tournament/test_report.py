@@ -8,14 +8,14 @@ from pathlib import Path
 
 import pytest
 
-from robobt.tournament.play import play
+from robobt.tournament.play import play_tournament
 from robobt.tournament.recordings import Keep, Recordings
 from robobt.tournament.report import rating_plot, report, write_report
-from robobt.tournament.standings import standings
+from robobt.tournament.standings import standings_of
 from tests.tournament.made_up import plan, played, runner
 
 MATCHES = [played("a", "b & <c>", number, (number, 1)) for number in range(4)]
-FOUND = standings(MATCHES, ["a", "b & <c>"])
+FOUND = standings_of(MATCHES, ["a", "b & <c>"])
 
 
 class Page(HTMLParser):
@@ -48,7 +48,7 @@ def test_the_page_tells_what_went_wrong_as_plain_text() -> None:
     ]
     forfeit = played("a", "b", 2, trace="", outcome="forfeit_blue", first_error="<b>it crashed</b>")
     matches = [forfeit, *broken]
-    page = report({}, standings(matches, ["a", "b"]), matches, {})
+    page = report({}, standings_of(matches, ["a", "b"]), matches, {})
     text = " ".join(Page(page).words)
     assert "only 2 of 3 matches differ" in text
     assert "a: lost 1 matches by rule; the first: <b>it crashed</b>" in text
@@ -70,10 +70,10 @@ def test_recorded_matches_are_linked(tmp_path: Path) -> None:
     what = plan(1, entrants=(runner(1.0), runner(2.0)))
     recordings = Recordings(tmp_path / "night.recordings", Keep.ALL, "at 1")
     with what.open_store(tmp_path / "night.sqlite") as store:
-        matches = play(what, store, recordings=recordings).matches
+        matches = play_tournament(what, store, recordings=recordings).matches
     recordings.path(matches[1].fixture).write_bytes(b"cut off")
     path = tmp_path / "out" / "night.html"
-    write_report(path, {}, standings(matches, what.names), matches, recordings)
+    write_report(path, {}, standings_of(matches, what.names), matches, recordings)
     (link,) = Page(path.read_text()).links
     assert "robobt replay" in (path.parent / link).read_text()
 
@@ -86,7 +86,7 @@ def test_recordings_and_pages_of_an_earlier_tournament_are_not_shown(tmp_path: P
     for fixture in what.fixtures():
         recordings.page(fixture).write_text("of an earlier tournament")
     with what.open_store(tmp_path / "night.sqlite") as store:
-        matches = play(what, store, recordings=recordings).matches
-    write_report(tmp_path / "night.html", {}, standings(matches, what.names), matches, recordings)
+        matches = play_tournament(what, store, recordings=recordings).matches
+    write_report(tmp_path / "night.html", {}, standings_of(matches, what.names), matches, recordings)
     for match in matches:
         assert "of an earlier tournament" not in recordings.page(match.fixture).read_text()

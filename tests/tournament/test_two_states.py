@@ -14,7 +14,7 @@ from typer.testing import CliRunner
 from robobt.cli import app
 from robobt.match.recording import load_recording
 from robobt.tournament.entrants import Entrant, EntrantError, read_entrant
-from robobt.tournament.play import play
+from robobt.tournament.play import play_tournament
 from robobt.tournament.recordings import Keep, Recordings
 from robobt.tournament.store import StoreError
 from tests.tournament.made_up import plan
@@ -77,7 +77,7 @@ def test_each_plays_its_own_on_any_number_of_processes(teams: tuple[str, str], t
         what = plan(3, entrants=entered(teams))
         with what.open_store(tmp_path / f"{workers}.sqlite") as store:
             recordings = Recordings(tmp_path / f"kept_{workers}", Keep.ALL, teams[0])
-            played = play(what, store, workers, recordings=recordings)
+            played = play_tournament(what, store, workers, recordings=recordings)
         assert not played.failed
         assert [match.side(name).first_error for match in played.matches for name in teams] == [None] * 12
         found[workers] = played.matches
@@ -96,7 +96,7 @@ def test_a_store_goes_on_with_the_states_that_it_knows_only(teams: tuple[str, st
     for rounds in (1, 2):
         what = plan(rounds, entrants=(one, other))
         with what.open_store(path) as store:
-            assert len(play(what, store).matches) == 2 * rounds
+            assert len(play_tournament(what, store).matches) == 2 * rounds
     shutil.copytree(tmp_path / "new", tmp_path / "edited")
     with (tmp_path / "edited" / "settings.py").open("a") as file:
         file.write("# edited\n")
@@ -110,10 +110,10 @@ def test_files_that_are_edited_while_a_tournament_runs_change_nothing(
 ) -> None:
     whole = plan(1, entrants=entered(teams))
     with whole.open_store(tmp_path / "a.sqlite") as store:
-        before = play(whole, store).matches
+        before = play_tournament(whole, store).matches
     (tmp_path / "old" / "settings.py").write_text("STATE, FASTEST = 'old', 6.0\n")
     with whole.open_store(tmp_path / "b.sqlite") as store:
-        assert rows(play(whole, store, 2).matches) == rows(before)
+        assert rows(play_tournament(whole, store, 2).matches) == rows(before)
 
 
 @pytest.mark.usefixtures("teams")
@@ -126,7 +126,7 @@ def test_entrants_files_in_one_folder_may_import_the_same_names(tmp_path: Path) 
         entrants.append(read_entrant(str(tmp_path / f"{name}.yaml")))
     what = plan(1, entrants=tuple(entrants))
     with what.open_store(tmp_path / "a.sqlite") as store:
-        played = play(what, store)
+        played = play_tournament(what, store)
     assert not played.failed
     assert [match.side("old").errors + match.side("new").errors for match in played.matches] == [0, 0]
 

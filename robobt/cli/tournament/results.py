@@ -64,7 +64,7 @@ def results(
     (95 %), ahead and behind (rounds in which the first made more and fewer points), p (exact); or the keys
     of 'robobt tournament': matches, distinct, standings, encounters.
     """
-    from robobt.tournament.standings import paired, standings
+    from robobt.tournament.standings import paired, standings_of
     from robobt.tournament.store import Store
 
     with Store(store) as held:
@@ -94,7 +94,7 @@ def results(
     if not found:
         raise typer.BadParameter(f"{store}: no match is left, or none was played yet")
     names = [name for name in dict.fromkeys([*(compare or ()), *known]) if _in(name, found)]
-    summed = standings(found, names)
+    summed = standings_of(found, names)
     if compare is not None:
         met = [one for one in summed.encounters if {one.first, one.second} == {*compare}]
         others = paired(found, *compare)

@@ -197,7 +197,7 @@ def tournament(
     need("tournament", "google.protobuf", "pyarrow", "scipy")
     from robobt.tournament.plan import Plan
     from robobt.tournament.sequential import RunningTest
-    from robobt.tournament.standings import standings
+    from robobt.tournament.standings import standings_of
 
     asked = test.asked(entrants, against)
     base, referees = refereeing.of_tournament(changes.scenario(scenario))
@@ -222,7 +222,7 @@ def tournament(
     _warn_of(played, len(plan.fixtures()), kept.out)
     if not played.matches:
         raise typer.Exit(130 if played.interrupted else 1)
-    found = standings(played.matches, plan.names, plan.against)
+    found = standings_of(played.matches, plan.names, plan.against)
     said = {
         "scenario": base.name,
         "seed": plan.seed,
@@ -270,7 +270,7 @@ def _played(
     plan: Plan, workers: int | None, out: Path | None, recordings: Recordings | None, test: RunningTest | None
 ) -> Played:
     """Play what is not in the store yet, until the test is decided if there is one."""
-    from robobt.tournament.play import play
+    from robobt.tournament.play import play_tournament
 
     with tempfile.TemporaryDirectory(prefix="robobt-") as folder:
         path = Path(folder) / "tournament.sqlite" if out is None else out
@@ -283,7 +283,7 @@ def _played(
                 progress.name(test.brief())
                 return decided
 
-            return play(
+            return play_tournament(
                 plan,
                 store,
                 _workers(plan) if workers is None else workers,

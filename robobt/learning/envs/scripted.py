@@ -46,7 +46,10 @@ _LOOK_AHEAD = 1.5
 
 
 def straight_drive(observation: FloatArray) -> FloatArray:
-    """Drive at the ball at full speed, whatever the heading, (n, 6) -> (n, 3): the fastest Go-To-Ball."""
+    """Return the actions (n, 3) that drive at the ball at full speed: the fastest Go-To-Ball.
+
+    The heading is left as it is; each ``observation`` (n, 6) is that of the task Go-To-Ball.
+    """
     sin_ball, cos_ball, *_ = observation.T
     return np.column_stack((cos_ball, sin_ball, np.zeros(len(observation))))
 

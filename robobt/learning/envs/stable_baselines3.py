@@ -88,7 +88,7 @@ class ArenasVecEnv(VecEnv):
         return [answer] * len(list(self._get_indices(indices)))
 
     def env_is_wrapped(self, wrapper_class: type[Any], indices: _Indices = None) -> list[bool]:  # noqa: ARG002
-        """Return that nothing is wrapped: wrap this, not what is inside."""
+        """Return False for each of the ``indices``, whatever ``wrapper_class``: nothing is wrapped."""
         return [False] * len(list(self._get_indices(indices)))
 
     def get_images(self) -> Sequence[NDArray[np.uint8] | None]:

@@ -100,7 +100,14 @@ class FieldPlayers:
     def decide(
         self, robots: FloatArray, balls: FloatArray, contact: NDArray[np.bool_], commands: FloatArray
     ) -> None:
-        """Decide one control tick: fill these robots' commands (n, R, size(COMMAND))."""
+        """Decide one control tick of these players in n arenas.
+
+        Args:
+            robots: every robot's state (n, R, 6).
+            balls: the balls' states (n, 4).
+            contact: whether a robot's kicker touches the ball (n, R).
+            commands: filled with these players' commands (n, R, size(COMMAND)).
+        """
         if self.any:
             roles, arenas = (self._roles, self._fetch, self._blue), (robots, balls, contact)
             _decide(self._field, self._drive, self._most, roles, arenas, commands)

@@ -74,8 +74,8 @@ class Compared:
     against_first: AgainstFirst | None
 
 
-def compare(variants: Mapping[str, Sequence[MatchResult]]) -> dict[str, Compared]:
-    """Compare the variants' results by trial number, each with the first.
+def compare_results(variants: Mapping[str, Sequence[MatchResult]]) -> dict[str, Compared]:
+    """Return the figures of ``variants``, each compared with the first by trial number.
 
     Raises:
         ValueError: a variant has no trial, or none that the first has too.

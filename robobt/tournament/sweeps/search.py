@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 from robobt.config.errors import RobobtError
 from robobt.tournament.fixtures import Fixture
-from robobt.tournament.play import play
+from robobt.tournament.play import play_tournament
 from robobt.tournament.played import PlayedMatch
 from robobt.tournament.sweeps.race import Race
 from robobt.tournament.sweeps.sweep import Sweep, load_optuna
@@ -86,7 +86,8 @@ def search(
         workers: processes; 0 is this process itself.
         on_progress: called with a number of matches that are played, or need not be played any more, and
             what is known so far.
-        on_wait: called when another program holds this one up, as by :func:`robobt.tournament.play.play`.
+        on_wait: called when another program holds this one up, as by
+            :func:`robobt.tournament.play.play_tournament`.
         tell_outputs: likewise.
 
     Raises:
@@ -137,7 +138,7 @@ def _search(
 
             plan = sweep.plan([sweep.entrant(one.params) for one in new], sweep.rounds)
             with plan.open_store(path, **sweep.says()) as store:
-                played = play(
+                played = play_tournament(
                     plan,
                     store,
                     workers,

@@ -16,7 +16,7 @@ from robobt.match.scenario.scenario import Scenario, ScenarioError
 from robobt.tournament.entrants import Entrant, meeting, read_entrant
 from robobt.tournament.fixtures import Fixture
 from robobt.tournament.plan import Plan
-from robobt.tournament.play import Played, play
+from robobt.tournament.play import Played, play_tournament
 from robobt.tournament.played import PlayedMatch
 from robobt.tournament.sequential import RunningTest, SequentialTest
 from robobt.tournament.sweeps.vary import SweepError, Varied
@@ -150,7 +150,7 @@ def confirm(
         path: the store of the search, which keeps these matches too.
         workers: processes; 0 is this process itself.
         on_progress: called after each match.
-        tell_outputs: as for :func:`~robobt.tournament.play.play`.
+        tell_outputs: as for :func:`~robobt.tournament.play.play_tournament`.
 
     Raises:
         StoreError: the store cannot be written.
@@ -165,7 +165,7 @@ def confirm(
         return decided
 
     with plan.open_store(path, **sweep.says()) as store:
-        return running, play(plan, store, workers, enough=enough, tell_outputs=tell_outputs)
+        return running, play_tournament(plan, store, workers, enough=enough, tell_outputs=tell_outputs)
 
 
 def load_optuna() -> Any:

@@ -19,7 +19,13 @@ FOR_EVER = 1_000_000
 
 @dataclass(frozen=True, slots=True)
 class Finding:
-    """Something in a tree that is worth a second look."""
+    """Something in a tree that is worth a second look.
+
+    Attributes:
+        path: of the node.
+        rule: that found it.
+        message: what it is about.
+    """
 
     path: str
     rule: str
@@ -30,7 +36,7 @@ class Finding:
 
 
 def lint_tree(root: Behaviour) -> list[Finding]:
-    """Return what is worth a second look in a tree, in the tree's order; the tree is not ticked.
+    """Return what is worth a second look below ``root``, in the tree's order; the tree is not ticked.
 
     | rule | finds |
     | --- | --- |

@@ -32,10 +32,10 @@ OWN = """
 import numpy as np
 from robobt.learning import TASKS
 from robobt.learning.envs import ArenaTask, TaskSettings, start_parts
-from robobt.world.observation import entries, observation
+from robobt.world.observation import entries, own_observation
 
 
-@observation("to_middle", 1, *entries("x y", "m", "far", 2.0))
+@own_observation("to_middle", 1, *entries("x y", "m", "far", 2.0))
 def TO_MIDDLE(seen):
     return np.column_stack(seen.in_frame_of_me(-seen.me["x"], -seen.me["y"]))
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from robobt.match.results.compare import compare
+from robobt.match.results.compare import compare_results
 from robobt.match.results.results import MatchResult, RobotResult
 
 
@@ -18,7 +18,7 @@ def trial(number: int, *, goal: bool, kick: float | None = 1.0, trace: str | Non
 def test_trials_are_paired_by_their_number() -> None:
     first = [trial(n, goal=n < 2) for n in range(10)]
     other = [trial(n, goal=n < 7, kick=None if n == 9 else 1.5 + 0.01 * n) for n in reversed(range(10))]
-    found = compare({"first": first, "other": other})
+    found = compare_results({"first": first, "other": other})
     assert found["first"].against_first is None
     against = found["other"].against_first
     assert against is not None
@@ -33,18 +33,18 @@ def test_trials_are_paired_by_their_number() -> None:
 
 
 def test_a_trial_that_only_one_played_is_left_out() -> None:
-    found = compare({"a": [trial(0, goal=True), trial(1, goal=True)], "b": [trial(1, goal=False)]})
+    found = compare_results({"a": [trial(0, goal=True), trial(1, goal=True)], "b": [trial(1, goal=False)]})
     against = found["b"].against_first
     assert against is not None
     assert (against.scored.n, against.only_first) == (1, 1)
     with pytest.raises(ValueError, match="b has no trial to compare with"):
-        compare({"a": [trial(0, goal=True)], "b": [trial(1, goal=True)]})
+        compare_results({"a": [trial(0, goal=True)], "b": [trial(1, goal=True)]})
 
 
 def test_trials_that_repeat_one_another_give_no_interval() -> None:
     first = [trial(n, goal=False, trace="x") for n in range(5)]
     other = [trial(n, goal=True, trace="y") for n in range(5)]
-    found = compare({"a": first, "b": other})
+    found = compare_results({"a": first, "b": other})
     assert (found["a"].trials, found["a"].distinct) == (5, 1)
     against = found["b"].against_first
     assert against is not None
@@ -54,7 +54,7 @@ def test_trials_that_repeat_one_another_give_no_interval() -> None:
 
 def test_differences_that_are_all_the_same_give_no_interval() -> None:
     trials = [trial(n, goal=n < 2) for n in range(5)]
-    against = compare({"a": trials, "b": trials})["b"].against_first
+    against = compare_results({"a": trials, "b": trials})["b"].against_first
     assert against is not None
     assert (against.goals.mean, against.goals.low, against.goals.high) == (0.0, None, None)
 
@@ -62,14 +62,14 @@ def test_differences_that_are_all_the_same_give_no_interval() -> None:
 def test_failed_trees_are_counted() -> None:
     failing = trial(0, goal=True)
     failing.robots["blue 0"].errors, failing.robots["blue 0"].first_error = 3, "Burst: ValueError"
-    found = compare({"a": [trial(0, goal=True)], "b": [failing]})
+    found = compare_results({"a": [trial(0, goal=True)], "b": [failing]})
     assert (found["a"].errors, found["a"].first_error) == (0, None)
     assert (found["b"].errors, found["b"].first_error) == (3, "blue 0: Burst: ValueError")
 
 
 def test_p_is_corrected_for_the_number_of_variants() -> None:
     base = [trial(n, goal=False) for n in range(8)]
-    found = compare(
+    found = compare_results(
         {
             "base": base,
             "much": [trial(n, goal=True) for n in range(8)],

@@ -48,12 +48,12 @@ class ShotRater(Settings, ABC):
     ) -> tuple[list[Shot], Chances | None]:
         """Return the openings, and the chance at every point of the goal line where the rater computes one.
 
-        Arguments as in :meth:`rate_all`.
+        Arguments are as for :meth:`ShotRater.rate_all`.
         """
         return self.rate_all(frame, origin, me, delay=delay), None
 
     def rate(self, frame: Frame, origin: Point, me: RobotState, *, delay: float = 0.0) -> Shot | None:
-        """Return the best opening, None without one; arguments as in :meth:`rate_all`."""
+        """Return the best opening, None without one; arguments are as for :meth:`ShotRater.rate_all`."""
         shots = self.rate_all(frame, origin, me, delay=delay)
         return shots[0] if shots else None
 
