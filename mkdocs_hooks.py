@@ -242,14 +242,16 @@ def skills() -> str:
 
 
 def python_names() -> str:
-    """Write the names of a first session, and those of trees."""
+    """Write the names of a first session, those of trees and those of tests."""
     import robobt
+    import robobt.testing
     import robobt.tree
     import robobt.tree.nodes
 
     names = [getattr(robobt, name) for name in robobt.__all__]
     names += [getattr(robobt.tree.nodes, name) for name in dir(robobt.tree.nodes)]
     names += [getattr(robobt.tree, name) for name in dir(robobt.tree)]
+    names += [getattr(robobt.testing, name) for name in dir(robobt.testing)]
     own = {id(one): one for one in names if getattr(one, "__module__", "").startswith("robobt.")}
     return _objects(
         "Python", [one for one in own.values() if inspect.isclass(one) or inspect.isfunction(one)]

@@ -6,14 +6,25 @@
 # commanded at this tick. This one drives once around the ball, to tease who defends.
 
 # %%
-from math import atan2, cos, hypot, pi, sin
+from math import atan2, cos, pi, sin
 
 import robobt
-from robobt import Skill, skill
+from robobt import Sequence, Skill, Status, skill
 from robobt.motion import drive
-from robobt.skills import GoToBall, KickToTarget, PickUpBall, SelectShot, Store
-from robobt.tree import Behaviour, Sequence, Status, TreeRunner
-from robobt.world import DIVISION_B
+from robobt.skills import GoToBall, KickToTarget, PickUpBall, SelectShot
+from robobt.testing import (
+    Ticker,
+    alone,
+    blue,
+    eventually,
+    frame,
+    make_store,
+    never,
+    robot,
+    succeeds,
+    touches_the_ball,
+)
+from robobt.tree import Behaviour
 
 
 @skill
@@ -44,18 +55,18 @@ class CircleBall(Skill):
 
 
 # %% [markdown]
-# ## Test it alone
+# ## Test one decision
 #
-# One skill, one frame made by hand, one tick: no simulator is needed to see what it decides. `pytest` runs
-# such functions.
+# One frame made by hand, one tick: no simulator is needed to see what the skill decides. `pytest` runs such
+# functions, and gives them the fixtures `make_store` and `tick_on` that do the same as the two functions
+# used here.
 
 
 # %%
 def test_it_sets_off_to_the_right_and_faces_the_ball() -> None:
-    me = robobt.RobotState(id=1, x=-0.6, y=0.0)
-    frame = robobt.Frame(time=0.0, field=DIVISION_B, ball=robobt.BallState(0.0, 0.0), own=(me,))
-    store = Store(frame, me)
-    assert TreeRunner(CircleBall(), store).tick() is Status.RUNNING
+    seen = frame(robot(x=-0.6), ball=(0.0, 0.0))
+    store = make_store(seen)
+    assert Ticker()(CircleBall(), [seen], store) == [Status.RUNNING]
     assert store.command.vy < 0.0  # left is positive
     assert abs(store.command.omega) < 1.0
 
@@ -63,14 +74,35 @@ def test_it_sets_off_to_the_right_and_faces_the_ball() -> None:
 test_it_sets_off_to_the_right_and_faces_the_ball()
 
 # %% [markdown]
-# ## Test it in the simulator
+# ## Test its behaviour
+#
+# In the simulator a test says what happens eventually, what holds always and what never does. The first
+# robot is alone on the field here.
+
+
+# %%
+def test_it_drives_around_the_ball_and_leaves_it_alone() -> None:
+    circle = CircleBall(seconds=5.0)
+    trial = alone(circle, (-1.0, 0.0, 0.0), ball=(0.0, 0.0))
+    trial.run(
+        6.0,
+        eventually("it is on the far side", lambda frame: frame.own[0].x > 0.3),
+        eventually("it has been round", succeeds(circle)),
+        never("it touches the ball", touches_the_ball(blue(0))),
+    )
+
+
+test_it_drives_around_the_ball_and_leaves_it_alone()
+
+# %% [markdown]
+# ## Play it
 #
 # A play makes it part of a tree. `memory=True` goes on where it was at the last tick, so the circle is
 # driven once.
 
 
 # %%
-@robobt.PLAYS.register("tease_and_shoot")
+@robobt.play
 def tease_and_shoot() -> Behaviour:
     """Once around the ball, then get it and shoot."""
     steps = [CircleBall(seconds=4.0), GoToBall(), PickUpBall(), SelectShot(), KickToTarget()]
@@ -84,23 +116,11 @@ scenario = robobt.Scenario.model_validate(
         "ends": {"time_limit": 20.0},
     }
 )
-
-
-def test_it_goes_round_the_ball_without_touching_it() -> None:
-    quarters = set()
-    with robobt.Match(scenario, seed=1) as match:
-        while match.tick() and match.world.truth().time < 4.0:
-            frame = match.world.truth()
-            me, ball = frame.own[0], frame.ball
-            assert hypot(me.x - ball.x, me.y - ball.y) > 0.2
-            quarters.add((me.x > ball.x, me.y > ball.y))
-    assert len(quarters) == 4
-
-
-test_it_goes_round_the_ball_without_touching_it()
 result = robobt.play_match(scenario, seed=1)
 print(f"in a match: {result.outcome} after {result.time:.2f} s")
 
 # %% [markdown]
+# All of what a test can say is in [Test your own skill](../testing.md).
+#
 # A skill in a file of its own is known to every command by `--import my_skills.py`; more on [skills and
 # plays of your own](../trees.md#skills-and-plays-of-your-own).

@@ -19,7 +19,7 @@ from hypothesis import HealthCheck, settings
 from robobt.config.telling import OFTEN
 from robobt.signals import TERMINATE
 
-pytest_plugins = ("tests.limits",)
+pytest_plugins = ("tests.limits", "robobt.testing.plugin")
 
 # Terminals and services that run tests set these, and commands print otherwise.
 for _name in ("COLUMNS", "LINES", "FORCE_COLOR", "NO_COLOR", "PY_COLORS", "GITHUB_ACTIONS"):

@@ -68,6 +68,7 @@ REPLACED = {
 """By page, what is run instead of what."""
 
 ELSEWHERE = {
+    "tick_on": "tests/testing/test_plugin.py: pytest runs it",
     "TeamConnection": "tests/league/test_remote.py: it takes a game controller that knows the team's key",
     "OfficialRefereeFactory": "tests/league/test_official_controller.py: it takes the official program",
     "SoccerParallelEnv": "tests/learning/envs/test_soccer_interfaces.py: it takes PettingZoo",

@@ -130,6 +130,29 @@ def test_it_knows_its_commit(unpacked: Path, tmp_path: Path) -> None:
     assert found.strip() == commit_of(ROOT / "robobt")
 
 
+OWN_TEST = """
+from robobt import Status
+from robobt.skills import HasBall
+from robobt.testing import frame, held, robot
+
+
+def test_it_has_the_ball(tick_on, make_store):
+    me = robot(number=3)
+    seen = frame(me, held(me))
+    assert tick_on(HasBall(), [seen, frame(me, (2.0, 0.0))], make_store(seen, 3)) == [
+        Status.SUCCESS,
+        Status.FAILURE,
+    ]
+"""
+
+
+@pytest.mark.integration
+def test_pytest_finds_its_fixtures_without_being_told(unpacked: Path, tmp_path: Path) -> None:
+    (tmp_path / "test_own.py").write_text(OWN_TEST)
+    code = "import pytest, sys; sys.exit(pytest.main(['-q', '-W', 'error']))"
+    assert "1 passed" in run(unpacked, tmp_path, code)
+
+
 @pytest.mark.integration
 def test_it_finds_its_scenarios_and_models_outside_the_checkout(unpacked: Path, tmp_path: Path) -> None:
     # It plays there in the slow test above: what is installed anew is compiled anew.

@@ -17,9 +17,9 @@ from robobt.skills.plan import Task
 from robobt.skills.store import TeamStore
 from robobt.skills.tactics.agree import agree
 from robobt.skills.tactics_settings import TacticsSettings
+from robobt.testing import frame, robot
 from robobt.world import DIVISION_B, RobotLimits
 from robobt.world.geometry import FloatArray
-from tests.skills.fixed_world import frame, robot
 from tests.skills.refereed import OPEN
 
 N = 7

@@ -13,13 +13,14 @@ from robobt.plays.baselines.mark_opponent import MarkOpponent
 from robobt.sim.records import COMMAND, size
 from robobt.skills import Wall
 from robobt.skills.base import Skill
+from robobt.testing.frames import HELD
 from robobt.tree import Behaviour
 from robobt.world import RobotLimits
 from robobt.world.field import DIVISION_B
 from robobt.world.game import Team
 from robobt.world.geometry import FloatArray
 from robobt.world.state import BallState, Frame, RobotState
-from tests.skills.fixed_world import HELD, Alone
+from tests.skills.fixed_world import Alone
 
 SIDE = 3
 AGE = 1000.0

@@ -12,10 +12,12 @@ from robobt.plays import goalkeeper
 from robobt.plays.goalkeeper import fitted_goalkeeper
 from robobt.sim.arenas import Arenas
 from robobt.sim.settings import preset
+from robobt.testing import frame, robot
+from robobt.testing.frames import HELD
 from robobt.world import RobotLimits
 from robobt.world.field import DIVISION_B
 from robobt.world.geometry import FloatArray, wrap_angle
-from tests.skills.fixed_world import HELD, Alone, frame, robot
+from tests.skills.fixed_world import Alone
 
 NAMES = ("aim", "shot", "fetch", "clear", "CoverAngle", "ReturnToGoal")
 PERIOD, TICKS = 0.03, 4

@@ -5,13 +5,13 @@ from math import pi
 
 import pytest
 
+from robobt import testing
 from robobt.live.driving import HELD_UP, STOPS_IN, HandDriver
 from robobt.world import Team
 from robobt.world.command import RobotCommand
-from tests.skills import fixed_world
 
-ME = fixed_world.robot(0.0, 0.0, pi / 2)
-VIEW = fixed_world.frame(ME, fixed_world.held(ME))
+ME = testing.robot(0.0, 0.0, pi / 2)
+VIEW = testing.frame(ME, testing.held(ME))
 PERIOD = 0.025
 TOP, TURN = ME.limits.max_speed, ME.limits.max_turn
 
@@ -97,9 +97,9 @@ def test_a_page_that_says_stop_stops_at_once(clock: Clock) -> None:
 
 
 def test_pass_assist_turns_to_the_mate_who_is_meant_and_kicks_as_fast_as_it_takes(clock: Clock) -> None:
-    mate = fixed_world.robot(1.0, 3.0, number=4)
-    behind = fixed_world.robot(0.0, -1.0, number=5)
-    view = fixed_world.frame(ME, fixed_world.held(ME), mates=(mate, behind))
+    mate = testing.robot(1.0, 3.0, number=4)
+    behind = testing.robot(0.0, -1.0, number=5)
+    view = testing.frame(ME, testing.held(ME), mates=(mate, behind))
     driver = HandDriver(clock, PERIOD)
     told(driver, clock, kick=6.0)
     assert driver(view, ME).kick_speed == 6.0
@@ -108,14 +108,14 @@ def test_pass_assist_turns_to_the_mate_who_is_meant_and_kicks_as_fast_as_it_take
     assert turning.kick_speed == 0.0
     assert turning.omega < 0.0
     aimed = replace(ME, heading=1.25)
-    passed = driver(fixed_world.frame(aimed, fixed_world.held(aimed), mates=(mate, behind)), aimed)
+    passed = driver(testing.frame(aimed, testing.held(aimed), mates=(mate, behind)), aimed)
     assert 2.5 < passed.kick_speed < 6.0
     told(driver, clock, kick=1.0, assist=True)
-    assert driver(fixed_world.frame(aimed, fixed_world.held(aimed), mates=(mate,)), aimed).kick_speed == 1.0
+    assert driver(testing.frame(aimed, testing.held(aimed), mates=(mate,)), aimed).kick_speed == 1.0
 
 
 def test_without_a_mate_ahead_an_assisted_kick_is_a_kick(clock: Clock) -> None:
     driver = HandDriver(clock, PERIOD)
     told(driver, clock, kick=6.0, assist=True)
-    away = fixed_world.frame(ME, fixed_world.held(ME), mates=(fixed_world.robot(0.0, -1.0, number=5),))
+    away = testing.frame(ME, testing.held(ME), mates=(testing.robot(0.0, -1.0, number=5),))
     assert driver(away, ME).kick_speed == driver(VIEW, ME).kick_speed == 6.0

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from robobt import testing
 from robobt.live import replay_html as module
 from robobt.live.replay_html import page_data, replay_html, write_html
 from robobt.match import MatchLoop
@@ -22,7 +23,6 @@ from robobt.world import DIVISION_A, RobotId, Team
 from robobt.world.game import OPEN_PLAY
 from robobt.worlds import sim_world
 from tests.match.recording.made_recording import BLUE_1, YELLOW_0, Wait, frame, header, record
-from tests.skills import fixed_world
 
 EVIL = "</script><script>alert(1)</script><img src=x onerror='alert(2)'>&lt;{{data}}{{title}}<!--"
 
@@ -241,11 +241,9 @@ def test_the_page_is_written_from_a_recording_or_its_file(tmp_path: Path, record
 
 def shooting(path: Path, rater: str) -> Recording:
     """A shooter that looks for a shot past a goalkeeper that goes from one side to the other."""
-    me, shooter = fixed_world.robot(2.4, 0.0), RobotId(Team.BLUE, 0)
+    me, shooter = testing.robot(2.4, 0.0), RobotId(Team.BLUE, 0)
     scenes = [
-        fixed_world.frame(
-            me, fixed_world.held(me), opponents=(fixed_world.robot(3.9, y, 3.1),), time=tick / 60
-        )
+        testing.frame(me, testing.held(me), opponents=(testing.robot(3.9, y, 3.1),), time=tick / 60)
         for tick, y in enumerate((0.4, 0.4, 0.4, -0.4, -0.4))
     ]
     store = Store(scenes[0], me)

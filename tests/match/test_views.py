@@ -7,12 +7,12 @@ from collections.abc import Callable
 import pytest
 
 from robobt.match.views import KeptView
+from robobt.testing import frame, robot
 from robobt.world import Frame, RobotState
 from robobt.world.ball_model import BallModel
 from robobt.world.game import GameState, TeamStatus
 from robobt.world.limits import RobotLimits
 from robobt.world.records import movers_of
-from tests.skills.fixed_world import frame, robot
 
 
 def kept_view(view: Frame) -> KeptView:

@@ -9,9 +9,10 @@ from hypothesis import strategies as st
 
 from robobt.motion.arrival import arrival_time, axis_time, meetings, out_of_reach, time_to
 from robobt.motion.pilot import drive, travel_time
+from robobt.testing import robot
 from robobt.world import RobotLimits, RobotState
 from robobt.world.records import mover_records, movers
-from tests.skills.fixed_world import moved, robot
+from tests.skills.fixed_world import moved
 
 LIMITS = RobotLimits()
 SIZE = (4.5, 3.0)

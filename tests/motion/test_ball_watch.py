@@ -5,10 +5,9 @@ from __future__ import annotations
 import pytest
 
 from robobt.motion.ball_watch import BallWatch
+from robobt.testing import Trial, blue, frame, robot
 from robobt.world import Frame
 from robobt.world.ball_model import DEFAULT_BALL
-from tests.simulation import Trial, blue
-from tests.skills.fixed_world import frame, robot
 
 PERIOD = 1 / 60
 

@@ -6,11 +6,11 @@ import pytest
 
 from robobt.motion.catch import catch
 from robobt.skills.base import Skill
+from robobt.testing import Trial, blue, robot
 from robobt.tree import Status
 from robobt.world import BallState
 from robobt.world.rules import CARRY_DISTANCE, has_ball
-from tests.simulation import Trial, blue
-from tests.skills.fixed_world import moved, robot
+from tests.skills.fixed_world import moved
 
 
 class Catch(Skill):

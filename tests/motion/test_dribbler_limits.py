@@ -15,10 +15,11 @@ from robobt.learning.envs.soccer.task import SoccerTask
 from robobt.models.actions import ActionScaling
 from robobt.models.card import action_outputs
 from robobt.skills import GoToBall, Score, Shoot
+from robobt.testing import frame, held, robot
 from robobt.world import RobotLimits
 from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS
 from tests.models.made_models import Straight, go_to_ball_card, shoot_card, team_card, write_model
-from tests.skills.fixed_world import Alone, frame, held, moved, robot
+from tests.skills.fixed_world import Alone, moved
 
 PERIOD = 0.03
 TOUCHING = ROBOT_RADIUS + BALL_RADIUS

@@ -10,10 +10,11 @@ from hypothesis import strategies as st
 
 from robobt.motion.give_way import slowed_in_play, slowed_towards
 from robobt.motion.path_planner import travel
+from robobt.testing import frame, robot
 from robobt.world import RobotCommand, RobotState
 from robobt.world.game import Team
 from robobt.world.records import ROBOT, Robot, mover_records, movers, robot_of
-from tests.skills.fixed_world import frame, moved, robot
+from tests.skills.fixed_world import moved
 from tests.skills.refereed import OPEN, STOP, free_kick
 
 FULL = RobotCommand(3.0, 0.0, 0.0)

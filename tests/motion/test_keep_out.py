@@ -5,10 +5,11 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from robobt.motion.keep_out import keep_out
+from robobt.testing import frame, robot
 from robobt.world import DIVISION_B, RobotCommand, RobotState
 from robobt.world.game import Team
 from robobt.world.rules import area_distance
-from tests.skills.fixed_world import frame, moved, robot
+from tests.skills.fixed_world import moved
 from tests.skills.refereed import OPEN, STOP
 
 PERIOD = 1 / 60

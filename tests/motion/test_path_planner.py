@@ -12,6 +12,7 @@ from numba.core.dispatcher import Dispatcher
 
 from robobt.motion import arrival, give_way, path_planner, pilot, scene, velocity_obstacles
 from robobt.motion.path_planner import allowed_target, next_waypoint, travel
+from robobt.testing import frame, robot
 from robobt.world import (
     DIVISION_A,
     DIVISION_B,
@@ -26,7 +27,7 @@ from robobt.world import (
 )
 from robobt.world.geometry import Point, segment_distance
 from robobt.world.rules import in_own_defense_area, in_their_defense_area
-from tests.skills.fixed_world import frame, moved, robot
+from tests.skills.fixed_world import moved
 
 STOPPED = GameState(command=RefereeCommand.STOP)
 THEIR_FREE_KICK = GameState(

@@ -23,10 +23,10 @@ from robobt.motion.pilot import (
 from robobt.sim import preset
 from robobt.sim.settings import RealismSettings
 from robobt.skills import GoToPose
+from robobt.testing import Trial, alone, blue, eventually, robot
 from robobt.world import RobotCommand, RobotLimits, RobotState
 from robobt.world.geometry import Point, wrap_angle
-from tests.simulation import Trial, blue, eventually
-from tests.skills.fixed_world import moved, robot
+from tests.skills.fixed_world import moved
 
 PERIODS = (1 / 60, 0.025, 0.03)
 SKEWED = RobotLimits(acceleration=6.6, braking=8.2, side_acceleration=4.5, side_braking=6.0)
@@ -268,7 +268,7 @@ def test_a_robot_that_reacts_late_is_asked_for_no_velocity_far_from_its_own(
 def test_grsims_robot_keeps_its_heading_when_it_is_sent_elsewhere_on_its_way() -> None:
     places = [(1.0, 0.0), (0.0, 1.0), (-1.0, 0.3), (0.5, -1.0)]
     skill = GoToPose(heading=0.0)
-    trial = Trial({blue(0): skill}, {blue(0): (0.0, 0.0, 0.0)}, ball=(3.0, 2.5), settings="grsim")
+    trial = alone(skill, (0.0, 0.0, 0.0), ball=(3.0, 2.5), settings="grsim")
     for k in range(16):
         skill.target = places[k % len(places)]
         trial.run(0.4)

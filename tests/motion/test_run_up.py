@@ -9,8 +9,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from robobt.motion.run_up import RUN_UP_SPEED, run_up
+from robobt.testing import robot
 from robobt.world import BallState
-from tests.skills.fixed_world import moved, robot
+from tests.skills.fixed_world import moved
 
 PERIOD = 1 / 60
 

@@ -7,9 +7,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from robobt.motion.stadium import outside_stadium
+from robobt.testing import frame, robot
 from robobt.world import Frame, GameState, RefereeCommand, Restart, Team
 from robobt.world.geometry import Point, segment_distance, segments_distance
-from tests.skills.fixed_world import frame, robot
 
 BALL, SPOT = (-2.0, 0.0), (2.0, 0.0)
 KEEP = 0.5 + 0.09

@@ -13,12 +13,13 @@ from hypothesis import strategies as st
 from robobt.motion.path_planner import travel
 from robobt.motion.scene import scene_of, trip_of
 from robobt.motion.velocity_obstacles import MOVES, clear_velocity
+from robobt.testing import frame, robot
 from robobt.world import ROBOT_RADIUS, Frame, RobotLimits, RobotState
 from robobt.world.avoiding import AHEAD, free_time
 from robobt.world.geometry import Point
 from robobt.world.records import LIMITS, SCENE, TRIP, limits_of, mover_records, movers_of
 from robobt.world.rules import in_their_defense_area
-from tests.skills.fixed_world import frame, moved, robot
+from tests.skills.fixed_world import moved
 from tests.skills.refereed import STOP
 
 PERIOD = 1 / 60

@@ -5,17 +5,22 @@ from math import pi
 import pytest
 
 from robobt.plays import attack_main, attack_support
-from robobt.world import Frame
-from tests.simulation import (
+from robobt.testing import (
     Trial,
+    alone,
     always,
     blue,
     eventually,
-    goal_for_us,
+    frame,
+    goal_for,
+    has_ball,
+    held,
     inside_the_field,
+    robot,
     yellow,
 )
-from tests.skills.fixed_world import Alone, frame, held, robot
+from robobt.world import Frame, Team
+from tests.skills.fixed_world import Alone
 
 
 def wall(x: float, half_width: float) -> tuple[tuple[float, float], ...]:
@@ -64,9 +69,9 @@ def test_from_too_far_away_it_does_not_shoot() -> None:
 @pytest.mark.parametrize("kick", ["default", "robobulls"])
 def test_it_scores_in_an_empty_goal(kick: str) -> None:
     tree = attack_main(kick=kick)  # type: ignore[arg-type]
-    Trial({blue(0): tree}, {blue(0): (-1.0, 1.0, 0.0)}, ball=(0.5, 0.0), settings="robobulls").run(
+    alone(tree, (-1.0, 1.0, 0.0), ball=(0.5, 0.0), settings="robobulls").run(
         10.0,
-        eventually("the ball is in the goal", goal_for_us()),
+        eventually("the ball is in the goal", goal_for(Team.BLUE)),
         always("inside the field", inside_the_field),
     )
 
@@ -75,7 +80,7 @@ def test_it_finds_its_way_round_a_defender() -> None:
     poses = {blue(0): (0.0, 0.0, 0.0), yellow(0): (1.0, 0.0, pi)}
     Trial({blue(0): attack_main(max_distance=3.0)}, poses, ball=(0.1, 0.0)).run(
         12.0,
-        eventually("the ball is in the goal", goal_for_us()),
+        eventually("the ball is in the goal", goal_for(Team.BLUE)),
         always("inside the field", inside_the_field),
     )
 
@@ -84,9 +89,7 @@ def test_a_pass_reaches_the_supporter() -> None:
     closed = {yellow(i): (1.6, y, pi) for i, (_, y) in enumerate(wall(1.6, 0.6))}
     poses = {blue(0): (1.0, 0.0, 0.0), blue(1): (2.0, 2.0, -pi / 2), **closed}
     trees = {blue(0): attack_main(), blue(1): attack_support()}
-    Trial(trees, poses, ball=(1.1, 0.0)).run(
-        8.0, eventually("the supporter has the ball", lambda frame: frame.own[1].ball_contact)
-    )
+    Trial(trees, poses, ball=(1.1, 0.0)).run(8.0, eventually("the supporter has the ball", has_ball(blue(1))))
 
 
 def test_the_supporter_waits_in_the_opponents_half_facing_the_ball() -> None:

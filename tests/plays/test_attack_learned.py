@@ -8,12 +8,12 @@ from robobt.match import run_trials_in, summarise
 from robobt.match.scenario.scenario import Scenario
 from robobt.plays import attack_learned
 from robobt.skills import Duel, LearnedSkill, Score, Skill
+from robobt.testing import Trial, alone, eventually, frame, goal_for, never, robot
 from robobt.tree import Status
-from robobt.world import Frame
+from robobt.world import Frame, Team
 from robobt.worlds import sim_world
 from tests.models.made_models import network, team_card, write_model
-from tests.simulation import Trial, blue, eventually, goal_for_us, never
-from tests.skills.fixed_world import Alone, frame, robot
+from tests.skills.fixed_world import Alone
 
 
 def goals(scenario: Scenario, trials: int, seed: int = 91) -> int:
@@ -34,8 +34,8 @@ def test_it_scores_nearly_always_where_attack_main_seldom_does(play: str, speed:
 def test_it_gets_a_ball_that_lies_on_the_field_and_scores(play: str):
     from robobt.plays import PLAYS
 
-    trial = Trial({blue(0): PLAYS[play](max_distance=3.5)}, {blue(0): (0.0, 0.0, 0.0)}, ball=(1.0, 0.8))
-    trial.run(12.0, eventually("the ball is in the goal", goal_for_us()))
+    trial = alone(PLAYS[play](max_distance=3.5), (0.0, 0.0, 0.0), ball=(1.0, 0.8))
+    trial.run(12.0, eventually("the ball is in the goal", goal_for(Team.BLUE)))
 
 
 def test_without_patience_it_takes_what_there_is():
@@ -65,7 +65,7 @@ def test_a_policy_that_stops_at_the_ball_gets_it_from_the_written_skills(tmp_pat
 
     def beside(patience: float) -> Trial:
         tree = attack_learned(policy=model, patience=patience)
-        return Trial({blue(0): tree}, {blue(0): (0.0, 0.0, 0.0)}, ball=(0.093, -0.07))
+        return alone(tree, (0.0, 0.0, 0.0), ball=(0.093, -0.07))
 
     beside(0.6).run(3.0, eventually("the ball is in the mouth", has_it))
     beside(60.0).run(3.0, never("the ball is in the mouth", has_it))

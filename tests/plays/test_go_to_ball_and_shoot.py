@@ -5,7 +5,8 @@ from typing import Literal
 import pytest
 
 from robobt.plays import go_to_ball_and_shoot
-from tests.simulation import Trial, always, blue, eventually, goal_for_us, inside_the_field
+from robobt.testing import Trial, alone, always, blue, eventually, goal_for, has_ball, inside_the_field
+from robobt.world import Team
 
 Style = Literal["default", "robobulls"]
 START = (-3.9, 0.0, 0.0)
@@ -14,10 +15,10 @@ START = (-3.9, 0.0, 0.0)
 def benchmark(ball: tuple[float, float], style: Style) -> Trial:
     """A run of the paper's Table 4, under its conditions."""
     tree = go_to_ball_and_shoot(style=style)
-    trial = Trial({blue(0): tree}, {blue(0): START}, ball, "robobulls", period=0.03)
+    trial = alone(tree, START, ball, "robobulls", period=0.03)
     trial.run(
         10.0,
-        eventually("the ball is in the goal", goal_for_us()),
+        eventually("the ball is in the goal", goal_for(Team.BLUE)),
         always("inside the field", inside_the_field),
     )
     return trial
@@ -40,11 +41,11 @@ def test_a_ball_that_is_lost_with_the_shot_begun_is_fetched_again(
     preset: str, away: tuple[float, float]
 ) -> None:
     tree = go_to_ball_and_shoot(policy="geometric", shoot="geometric")
-    trial = Trial({blue(0): tree}, {blue(0): (-1.0, 0.0, 0.0)}, (0.0, 1.0), preset, period=0.03)
-    trial.run(5.0, eventually("it has the ball", lambda frame: frame.own[0].ball_contact))
+    trial = alone(tree, (-1.0, 0.0, 0.0), (0.0, 1.0), preset, period=0.03)
+    trial.run(5.0, eventually("it has the ball", has_ball(blue(0))))
     me = trial.frames[-1].own[0]
     trial.world.place_ball(me.x + away[0], me.y + away[1])
-    trial.run(8.0, eventually("the ball is in the goal", goal_for_us()))
+    trial.run(8.0, eventually("the ball is in the goal", goal_for(Team.BLUE)))
     assert len(trial.kicks) == 1
 
 

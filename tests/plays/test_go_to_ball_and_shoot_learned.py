@@ -10,9 +10,10 @@ import pytest
 
 from robobt.plays import go_to_ball_and_shoot
 from robobt.skills import GoToBall, KickToTarget, SelectShot, Shoot
+from robobt.testing import alone, always, eventually, goal_for, inside_the_field
 from robobt.tree import preorder
+from robobt.world import Team
 from tests.models.made_models import Aimed, Straight, go_to_ball_card, shoot_card, write_model
-from tests.simulation import Trial, always, blue, eventually, goal_for_us, inside_the_field
 
 Kick = Literal["kick_to_target", "geometric", "ddpg"]
 SHOTS: tuple[Kick, ...] = ("kick_to_target", "geometric", "ddpg")
@@ -32,10 +33,10 @@ def shipped(tmp_path_factory: pytest.TempPathFactory) -> Path:  # type: ignore[m
 @pytest.mark.parametrize("policy", ["geometric", "ddpg"])
 def test_every_combination_scores(policy: str, shoot: Kick) -> None:
     tree = go_to_ball_and_shoot(policy=policy, shoot=shoot)
-    trial = Trial({blue(0): tree}, {blue(0): (-1.0, 0.0, 0.0)}, (1.0, 1.0), "robobulls", period=0.03)
+    trial = alone(tree, (-1.0, 0.0, 0.0), (1.0, 1.0), "robobulls", period=0.03)
     trial.run(
         10.0,
-        eventually("the ball is in the goal", goal_for_us()),
+        eventually("the ball is in the goal", goal_for(Team.BLUE)),
         always("inside the field", inside_the_field),
     )
 
@@ -73,7 +74,7 @@ def test_models_of_ones_own_take_the_place_of_the_shipped_ones(shipped: Path) ->
 def test_approach_and_pick_up_do_not_take_turns() -> None:
     tree = go_to_ball_and_shoot(policy="ddpg", shoot="ddpg")
     names = {type(node).__name__: node for node in preorder(tree)}
-    trial = Trial({blue(0): tree}, {blue(0): (-2.0, 0.0, 0.0)}, (1.0, 0.5), "robobulls", period=0.03)
+    trial = alone(tree, (-2.0, 0.0, 0.0), (1.0, 0.5), "robobulls", period=0.03)
     doing = []
     for _ in range(200):
         seen = trial.tick()

@@ -6,20 +6,25 @@ from typing import Literal
 import pytest
 
 from robobt.plays import goalkeeper
-from robobt.tree import Behaviour
-from robobt.world import Frame
-from tests.simulation import (
+from robobt.testing import (
     Pose,
     Trial,
+    alone,
     always,
     blue,
     eventually,
-    goal_for_them,
+    frame,
+    goal_for,
+    has_ball,
+    held,
     inside_the_field,
     never,
+    robot,
     yellow,
 )
-from tests.skills.fixed_world import Alone, frame, held, robot
+from robobt.tree import Behaviour
+from robobt.world import Frame, Team
+from tests.skills.fixed_world import Alone
 
 Style = Literal["default", "robobulls"]
 STYLES: tuple[Style, ...] = ("default", "robobulls")
@@ -30,7 +35,7 @@ def playing(
     ball: tuple[float, ...], style: Style = "default", speed: float = 1.0, start: Pose = (-4.35, 0.0, 0.0)
 ) -> Trial:
     settings = "robobulls" if style == "robobulls" else "default"
-    return Trial({blue(0): goalkeeper(style=style, speed=speed)}, {blue(0): start}, ball, settings)
+    return alone(goalkeeper(style=style, speed=speed), start, ball, settings)
 
 
 def case(now: Frame) -> str:
@@ -57,7 +62,9 @@ def test_every_case_has_its_turn() -> None:
 @pytest.mark.parametrize("y", [-0.3, 0.0, 0.3])
 def test_it_saves_a_slow_shot(style: Style, y: float) -> None:
     playing((-1.0, 0.0, -2.5, y * 2.5 / 3.5), style).run(
-        4.0, never("the ball is in our goal", goal_for_them()), always("inside the field", inside_the_field)
+        4.0,
+        never("the ball is in our goal", goal_for(Team.YELLOW)),
+        always("inside the field", inside_the_field),
     )
 
 
@@ -66,21 +73,21 @@ def test_it_clears_a_ball_that_rests_in_its_area(style: Style) -> None:
     playing((-3.9, 0.4), style).run(
         8.0,
         eventually("the ball is far away", lambda frame: frame.ball.x > -2.5),
-        never("the ball is in our goal", goal_for_them()),
+        never("the ball is in our goal", goal_for(Team.YELLOW)),
     )
 
 
 def test_it_clears_to_a_team_mate() -> None:
     poses = {blue(0): (-4.35, 0.0, 0.0), blue(1): (-1.0, 2.0, pi)}
     trial = Trial({blue(0): goalkeeper()}, poses, (-3.9, 0.4))
-    trial.run(8.0, eventually("the mate gets the ball", lambda frame: frame.own[1].ball_contact))
+    trial.run(8.0, eventually("the mate gets the ball", has_ball(blue(1))))
 
 
 def test_it_brings_a_ball_on_the_edge_of_its_area_into_play_again() -> None:
     playing((-3.45, 0.3)).run(
         15.0,
         eventually("the ball is far away", lambda frame: frame.ball.x > -2.5),
-        never("the ball is in our goal", goal_for_them()),
+        never("the ball is in our goal", goal_for(Team.YELLOW)),
     )
 
 

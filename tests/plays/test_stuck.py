@@ -1,9 +1,10 @@
 from __future__ import annotations
 
 from robobt.plays.stuck import get_where_stuck
+from robobt.testing import frame, robot
 from robobt.tree import Status
 from robobt.world import RobotState
-from tests.skills.fixed_world import Alone, frame, robot
+from tests.skills.fixed_world import Alone
 
 PERIOD = 1 / 60
 BESIDE = (0.093, -0.07)

@@ -7,9 +7,10 @@ import pytest
 
 from robobt.plays import team_keeper
 from robobt.skills import Goalkeeper
+from robobt.testing import Trial, blue, eventually, frame, goal_for, has_ball, never, robot, yellow
+from robobt.world import Team
 from tests.models.made_models import network, team_card, write_model
-from tests.simulation import Trial, blue, eventually, goal_for_them, never, yellow
-from tests.skills.fixed_world import Alone, frame, robot
+from tests.skills.fixed_world import Alone
 
 HOME, BALL = (-4.35, 0.0, 0.0), (-3.9, 0.4)
 
@@ -18,8 +19,8 @@ def test_it_clears_a_ball_in_its_area_to_a_mate_that_gets_it() -> None:
     trial = Trial({blue(0): team_keeper()}, {blue(0): HOME, blue(1): (-1.0, 2.0, pi)}, BALL)
     trial.run(
         8.0,
-        eventually("the mate gets the ball", lambda frame: frame.own[1].ball_contact),
-        never("the ball is in our goal", goal_for_them()),
+        eventually("the mate gets the ball", has_ball(blue(1))),
+        never("the ball is in our goal", goal_for(Team.YELLOW)),
     )
 
 
@@ -27,7 +28,7 @@ def test_it_clears_a_ball_in_its_area_to_a_mate_that_gets_it() -> None:
 def test_without_a_mate_it_gets_the_ball_away_over_those_who_wait(chips: bool) -> None:
     fence = {yellow(number): (-2.6, 0.25 * number - 0.5, pi) for number in range(5)}
     trial = Trial({blue(0): team_keeper(chips=chips)}, {blue(0): HOME, **fence}, BALL)
-    trial.run(8.0, never("the ball is in our goal", goal_for_them()))
+    trial.run(8.0, never("the ball is in our goal", goal_for(Team.YELLOW)))
     highest = max(frame.ball.z for frame in trial.frames)
     assert (highest > 0.15) is chips
     assert trial.frames[-1].ball.x > -3.3

@@ -5,59 +5,10 @@ from __future__ import annotations
 from math import cos, hypot, sin, sqrt
 
 from robobt.skills.store import Pass, Shot, Store
+from robobt.testing import frame, robot
 from robobt.tree import Behaviour, Status, TreeRunner
-from robobt.world import (
-    DIVISION_B,
-    OPEN_PLAY,
-    BallState,
-    FieldGeometry,
-    Frame,
-    GameState,
-    RobotCommand,
-    RobotId,
-    RobotLimits,
-    RobotState,
-    Team,
-)
+from robobt.world import Frame, RobotCommand, RobotState
 from robobt.world.geometry import Point, wrap_angle
-
-HELD = 0.0965
-"""Distance of a held ball's centre from the robot's [m]."""
-
-
-def robot(
-    x: float = 0.0,
-    y: float = 0.0,
-    heading: float = 0.0,
-    number: int = 0,
-    velocity: tuple[float, float, float] = (0.0, 0.0, 0.0),
-    contact: bool = False,
-    limits: RobotLimits | None = None,
-) -> RobotState:
-    """A robot at a pose [m, rad], at rest unless told otherwise."""
-    return RobotState(number, x, y, heading, *velocity, contact, limits or RobotLimits())
-
-
-def frame(
-    me: RobotState,
-    ball: tuple[float, ...] = (0.0, 0.0),
-    mates: tuple[RobotState, ...] = (),
-    opponents: tuple[RobotState, ...] = (),
-    time: float = 0.0,
-    game: GameState = OPEN_PLAY,
-    field: FieldGeometry = DIVISION_B,
-    period: float = 1 / 60,
-    team: Team = Team.BLUE,
-    last_touch: RobotId | None = None,
-) -> Frame:
-    """A frame around ``me``; the ball is (x, y) or (x, y, vx, vy)."""
-    own = tuple(sorted((me, *mates), key=lambda mate: mate.id))
-    return Frame(time, field, BallState(*ball), own, opponents, team, period, game, last_touch)
-
-
-def held(me: RobotState) -> tuple[float, float]:
-    """Where the ball lies in the mouth of ``me``."""
-    return (me.x + HELD * cos(me.heading), me.y + HELD * sin(me.heading))
 
 
 class Alone:

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from robobt.skills.store import TeamStore
+from robobt.testing import frame
 from robobt.tree import Behaviour, Status
 from robobt.world import GameState, RefereeCommand, Restart, RobotState, Team
 from robobt.world.geometry import Point
-from tests.skills.fixed_world import Alone, frame, moved
+from tests.skills.fixed_world import Alone, moved
 
 HALT = GameState(RefereeCommand.HALT, may_touch=False)
 STOP = GameState(RefereeCommand.STOP, may_touch=False)

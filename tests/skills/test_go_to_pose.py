@@ -13,6 +13,19 @@ from robobt.learning.envs.go_to_ball.task import GoToBallTask
 from robobt.models.file import ModelError
 from robobt.models.policy import load_policy
 from robobt.skills import GoToPose
+from robobt.testing import (
+    Trial,
+    alone,
+    always,
+    blue,
+    eventually,
+    frame,
+    inside_the_field,
+    never,
+    robot,
+    succeeds,
+    yellow,
+)
 from robobt.tree import Status
 from robobt.world import (
     DIVISION_B,
@@ -28,8 +41,7 @@ from robobt.world.avoiding import GO_TO_BALL_AMONG_ROBOTS, among_robots_of
 from robobt.world.rules import in_own_defense_area, in_their_defense_area
 from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS
 from tests.models.made_models import Faulty, Onward, among_robots_card, network, write_model
-from tests.simulation import Trial, always, blue, eventually, inside_the_field, never, yellow
-from tests.skills.fixed_world import Alone, frame, moved, robot
+from tests.skills.fixed_world import Alone, moved
 
 
 def test_without_a_target_it_fails() -> None:
@@ -102,7 +114,7 @@ def test_it_arrives_round_robots_and_ball_and_turned() -> None:
 
     end = trial.run(
         4.0,
-        eventually("it has arrived", lambda _: go.status is Status.SUCCESS),
+        eventually("it has arrived", succeeds(go)),
         always("inside the field", inside_the_field),
         always("the ball lies still", lambda frame: frame.ball.speed == 0.0),
         never("it touches a robot", touched),
@@ -111,7 +123,7 @@ def test_it_arrives_round_robots_and_ball_and_turned() -> None:
 
 
 def test_it_never_leaves_the_walls_and_never_enters_their_area() -> None:
-    trial = Trial({blue(0): GoToPose(target=(9.0, 0.5))}, {blue(0): (0.0, 2.0, 0.0)}, ball=(-2.0, 0.0))
+    trial = alone(GoToPose(target=(9.0, 0.5)), (0.0, 2.0, 0.0), ball=(-2.0, 0.0))
     trial.run(
         3.0,
         always("inside the field", inside_the_field),
@@ -167,16 +179,16 @@ def test_a_policy_drives_to_the_place_as_it_does_to_the_ball_in_training(tmp_pat
 
 def test_where_a_policy_drives_the_robot_stands_as_it_is_to_in_the_end(tmp_path: Path) -> None:
     go = learned(tmp_path, target=(1.5, 1.0), heading=2.0)
-    trial = Trial({blue(0): go}, {blue(0): (-2.0, 0.0, 0.0)}, ball=(3.0, -2.0), period=0.03)
-    trial.run(6.0, eventually("it is there", lambda _: go.status is Status.SUCCESS))
+    trial = alone(go, (-2.0, 0.0, 0.0), ball=(3.0, -2.0), period=0.03)
+    trial.run(6.0, eventually("it is there", succeeds(go)))
 
 
 def test_a_policy_is_led_round_the_defence_area(tmp_path: Path) -> None:
     go = learned(tmp_path, target=(-4.2, -1.8))
-    trial = Trial({blue(0): go}, {blue(0): (-4.2, 1.8, 0.0)}, ball=(3.0, -2.0), period=0.03)
+    trial = alone(go, (-4.2, 1.8, 0.0), ball=(3.0, -2.0), period=0.03)
     trial.run(
         9.0,
-        eventually("it is there", lambda _: go.status is Status.SUCCESS),
+        eventually("it is there", succeeds(go)),
         never("in the area", lambda seen: in_own_defense_area(seen.field, *seen.own[0].position)),
     )
 

@@ -28,6 +28,7 @@ from py_trees.decorators import Timeout as StockTimeout
 from py_trees.visitors import VisitorBase
 
 from robobt.skills.restarts.referee_switch import RefereeSwitch
+from robobt.testing import frame, robot
 from robobt.tree import (
     Behaviour,
     FailureIsSuccess,
@@ -58,7 +59,7 @@ from robobt.tree.nodes import (
     Wait,
 )
 from robobt.world import Team
-from tests.skills.fixed_world import Alone, frame, robot
+from tests.skills.fixed_world import Alone
 from tests.skills.refereed import HALT, OPEN, STOP, free_kick, kickoff, penalty
 from tests.tree.random_trees import Log, Told
 from tests.tree.scripted import INVALID, F, Notes, R, S, Scripted, Watched, scripted

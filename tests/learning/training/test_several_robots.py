@@ -19,8 +19,9 @@ from robobt.learning.training.train import train
 from robobt.models.file import read_model_file
 from robobt.skills import Duel, Goalkeeper, LearnedSkill, Score
 from robobt.skills.ball.policy_skill import PolicySkill
+from robobt.testing import frame, robot
 from robobt.tree import Status
-from tests.skills.fixed_world import Alone, frame, robot
+from tests.skills.fixed_world import Alone
 
 TINY = {
     "steps": 480,

@@ -6,9 +6,10 @@ import pytest
 
 from robobt.plays.baselines.is_attacker import IsAttacker
 from robobt.skills.store import TeamStore
+from robobt.testing import frame, held, robot
 from robobt.tree import Status
 from robobt.world import OPEN_PLAY, GameState, RobotState, Team
-from tests.skills.fixed_world import Alone, frame, held, robot
+from tests.skills.fixed_world import Alone
 from tests.skills.refereed import free_kick
 
 

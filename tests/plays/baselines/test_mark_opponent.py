@@ -2,10 +2,11 @@ from __future__ import annotations
 
 from robobt.plays.baselines.mark_opponent import MarkOpponent
 from robobt.skills.store import TeamStore
+from robobt.testing import frame, held, robot
 from robobt.tree import Status
 from robobt.world import RobotState
 from robobt.world.geometry import distance, segment_distance
-from tests.skills.fixed_world import Alone, frame, held, robot
+from tests.skills.fixed_world import Alone
 from tests.skills.refereed import OPEN, Drive
 
 

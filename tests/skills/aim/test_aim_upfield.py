@@ -6,11 +6,11 @@ import pytest
 
 from robobt.skills.aim.aim_upfield import AimUpfield
 from robobt.skills.ball.kick_to_target import KickToTarget
+from robobt.testing import Trial, always, blue, eventually, frame, robot
 from robobt.tree import Sequence, Status
 from robobt.world import DIVISION_B, RobotState
 from robobt.world.geometry import segment_distance
-from tests.simulation import Trial, always, blue, eventually
-from tests.skills.fixed_world import Alone, frame, robot
+from tests.skills.fixed_world import Alone
 
 Point = tuple[float, float]
 

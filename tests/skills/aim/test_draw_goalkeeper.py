@@ -1,16 +1,16 @@
 from math import atan2
 
 from robobt.skills.aim.draw_goalkeeper import DrawGoalkeeper
+from robobt.testing import alone, always, eventually, frame, held, robot
 from robobt.tree import Status
-from tests.simulation import Trial, always, blue, eventually
-from tests.skills.fixed_world import Alone, frame, held, robot
+from tests.skills.fixed_world import Alone
 
 ME = robot(3.2, 0.0, contact=True)
 POST = atan2(0.43, 4.5 - 3.2)
 
 
 def test_it_points_at_one_post_and_then_at_the_other_and_keeps_the_ball():
-    trial = Trial({blue(0): DrawGoalkeeper()}, {blue(0): (3.2, 0.0, 0.1)}, ball=(3.298, 0.0))
+    trial = alone(DrawGoalkeeper(), (3.2, 0.0, 0.1), ball=(3.298, 0.0))
     trial.run(
         4.0,
         eventually("it points at the left post", lambda frame: abs(frame.own[0].heading - POST) < 0.08),

@@ -1,7 +1,8 @@
 from robobt.skills.aim.pass_is_open import PassIsOpen
 from robobt.skills.aim.pass_rater import PassRater
+from robobt.testing import frame, held, robot
 from robobt.tree import Status
-from tests.skills.fixed_world import Alone, frame, held, pass_to, robot
+from tests.skills.fixed_world import Alone, pass_to
 
 ME = robot(0.0, 0.0)
 MATE = robot(2.0, 1.0, number=1)

@@ -1,8 +1,9 @@
 from __future__ import annotations
 
 from robobt.skills.aim.pass_is_steady import PassIsSteady
+from robobt.testing import frame, robot
 from robobt.tree import Status
-from tests.skills.fixed_world import Alone, frame, pass_to, robot
+from tests.skills.fixed_world import Alone, pass_to
 
 PERIOD = 0.02
 

@@ -8,11 +8,11 @@ from robobt.skills.aim.pass_rater import PassRater, resting_point
 from robobt.skills.aim.raters import Gaussian
 from robobt.skills.base import Skill
 from robobt.skills.store import Pass
+from robobt.testing import alone, eventually, frame, held, robot
+from robobt.testing.frames import HELD
 from robobt.tree import Status
 from robobt.world import Frame, RobotCommand, RobotState
 from robobt.world.ball_model import DEFAULT_BALL
-from tests.simulation import Trial, blue, eventually
-from tests.skills.fixed_world import HELD, frame, held, robot
 
 ME = robot(-0.1, 0.0)
 RATER = PassRater()
@@ -59,7 +59,7 @@ class Kick(Skill):
 def test_the_ball_arrives_at_a_speed_that_can_be_received(length: float) -> None:
     (only,) = passes((robot(length, 0.0, number=1),))
     kicker = robot(-HELD, 0.0)
-    trial = Trial({blue(0): Kick(only.speed)}, {blue(0): (kicker.x, 0.0, 0.0)}, held(kicker))
+    trial = alone(Kick(only.speed), (kicker.x, 0.0, 0.0), held(kicker))
     there = trial.run(4.0, eventually("the ball is there", lambda frame: frame.ball.x >= length))
     assert there.ball.speed == pytest.approx(RATER.receive_speed, abs=0.1)
 

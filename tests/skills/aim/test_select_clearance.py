@@ -1,10 +1,11 @@
 from __future__ import annotations
 
 from robobt.skills.aim.select_clearance import SelectClearance
+from robobt.testing import frame, robot
 from robobt.tree import Status
 from robobt.world.ball_model import DEFAULT_BALL
 from robobt.world.geometry import distance
-from tests.skills.fixed_world import Alone, frame, pass_to, robot, shot_at
+from tests.skills.fixed_world import Alone, pass_to, shot_at
 
 ME = robot(-4.3, 0.0)
 BALL = (-4.0, 0.3)

@@ -2,9 +2,10 @@ import pytest
 
 from robobt.skills.aim.pass_rater import PassRater
 from robobt.skills.aim.select_pass import SelectPass
+from robobt.testing import frame, held, robot
 from robobt.tree import Status
 from robobt.world import Frame, RobotState
-from tests.skills.fixed_world import Alone, frame, held, pass_to, robot
+from tests.skills.fixed_world import Alone, pass_to
 
 ME = robot(0.0, 0.0)
 

@@ -7,9 +7,10 @@ import pytest
 from robobt.skills.aim.raters import ExpectedGoal, MovingHorizon, NNFiltered
 from robobt.skills.aim.raters.goal_line import goal_candidates, judged_goal_line
 from robobt.skills.aim.select_shot import SelectShot
+from robobt.testing import frame, held, robot
 from robobt.tree import Status
 from robobt.world import DIVISION_A, DIVISION_B, FieldGeometry, Frame
-from tests.skills.fixed_world import Alone, frame, held, robot, shot_at
+from tests.skills.fixed_world import Alone, shot_at
 
 ME = robot(1.9, 0.0)
 

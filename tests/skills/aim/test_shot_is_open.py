@@ -3,8 +3,9 @@ from math import pi
 import pytest
 
 from robobt.skills.aim.shot_is_open import ShotIsOpen
+from robobt.testing import frame, held, robot
 from robobt.tree import Status
-from tests.skills.fixed_world import Alone, frame, held, robot, shot_at
+from tests.skills.fixed_world import Alone, shot_at
 
 ME = robot(1.9, 0.0)
 OPEN = frame(ME, held(ME))

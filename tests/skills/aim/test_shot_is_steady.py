@@ -1,8 +1,9 @@
 from __future__ import annotations
 
 from robobt.skills.aim.shot_is_steady import ShotIsSteady
+from robobt.testing import frame, robot
 from robobt.tree import Status
-from tests.skills.fixed_world import Alone, frame, robot, shot_at
+from tests.skills.fixed_world import Alone, shot_at
 
 PERIOD = 0.02
 

@@ -6,11 +6,24 @@ import pytest
 
 from robobt.motion.dribbling import MAX_ACCELERATION, MAX_TURN, TURN_ACCELERATION, dribbling_limits, settle
 from robobt.skills import DribbleTo
+from robobt.testing import (
+    Trial,
+    alone,
+    always,
+    blue,
+    eventually,
+    fails,
+    frame,
+    held,
+    never,
+    robot,
+    touches_a_robot,
+    yellow,
+)
 from robobt.tree import Status
 from robobt.world import Frame
 from robobt.world.geometry import to_robot_frame
-from tests.simulation import Trial, always, blue, eventually, never, yellow
-from tests.skills.fixed_world import Alone, frame, held, robot
+from tests.skills.fixed_world import Alone
 
 MOUTH = 0.0975
 
@@ -91,7 +104,7 @@ def test_it_carries_no_farther_than_allowed() -> None:
 
 @pytest.mark.parametrize("target", [(2.0, 0.0), (-2.0, 0.5), (0.0, -2.0)])
 def test_it_brings_the_ball_anywhere(target: tuple[float, float]) -> None:
-    trial = Trial({blue(0): DribbleTo(target=target)}, {blue(0): (0.0, 0.0, 0.0)}, (MOUTH, 0.0))
+    trial = alone(DribbleTo(target=target), (0.0, 0.0, 0.0), (MOUTH, 0.0))
     trial.run(
         5.0,
         eventually(
@@ -114,7 +127,7 @@ def test_it_carries_the_ball_round_an_opponent() -> None:
         always("the robot has the ball", carrying),
         never(
             "it touches the opponent",
-            lambda f: hypot(f.own[0].x - f.opponents[0].x, f.own[0].y - f.opponents[0].y) < 0.18,
+            touches_a_robot(blue(0)),
         ),
     )
 
@@ -122,8 +135,8 @@ def test_it_carries_the_ball_round_an_opponent() -> None:
 def test_turning_hard_with_the_ball_is_what_loses_it() -> None:
     """The same way with limits beyond the dribbler's: the bar above is not a free pass."""
     wild = DribbleTo(target=(-2.0, 0.5), max_speed=3.0, max_turn=9.0, max_acceleration=6.0)
-    trial = Trial({blue(0): wild}, {blue(0): (0.0, 0.0, 0.0)}, (MOUTH, 0.0))
-    trial.run(3.0, eventually("the ball is lost", lambda _: wild.status is Status.FAILURE))
+    trial = alone(wild, (0.0, 0.0, 0.0), (MOUTH, 0.0))
+    trial.run(3.0, eventually("the ball is lost", fails(wild)))
 
 
 def test_settling_stops_the_robot_gently() -> None:

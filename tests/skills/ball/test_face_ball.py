@@ -5,9 +5,9 @@ from math import atan2, hypot
 import pytest
 
 from robobt.skills import FaceBall
+from robobt.testing import alone, always, eventually, frame, robot, succeeds
 from robobt.tree import Status
-from tests.simulation import Trial, always, blue, eventually
-from tests.skills.fixed_world import Alone, frame, robot
+from tests.skills.fixed_world import Alone
 
 
 def test_it_turns_the_short_way() -> None:
@@ -24,10 +24,10 @@ def test_facing_the_ball_it_succeeds() -> None:
 @pytest.mark.parametrize("ball", [(-1.0, 0.1), (0.0, 1.0), (1.0, -1.0)])
 def test_it_turns_on_the_spot(ball: tuple[float, float]) -> None:
     face = FaceBall()
-    trial = Trial({blue(0): face}, {blue(0): (0.0, 0.0, 0.0)}, ball)
+    trial = alone(face, (0.0, 0.0, 0.0), ball)
     end = trial.run(
         2.0,
-        eventually("it faces the ball", lambda _: face.status is Status.SUCCESS),
+        eventually("it faces the ball", succeeds(face)),
         always("it stays", lambda frame: hypot(frame.own[0].x, frame.own[0].y) < 0.001),
     )
     assert end.own[0].heading == pytest.approx(atan2(ball[1], ball[0]), abs=0.06)

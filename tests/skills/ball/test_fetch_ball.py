@@ -1,13 +1,13 @@
 from __future__ import annotations
 
 from robobt.skills.ball.fetch_ball import FetchBall
+from robobt.testing import alone, always, eventually, frame, robot
 from robobt.tree import Status
-from tests.simulation import Trial, always, blue, eventually
-from tests.skills.fixed_world import Alone, frame, robot
+from tests.skills.fixed_world import Alone
 
 
 def test_it_pulls_a_ball_from_the_edge_of_the_area_to_the_goal() -> None:
-    trial = Trial({blue(0): FetchBall()}, {blue(0): (-4.35, 0.0, 0.0)}, ball=(-3.45, 0.4))
+    trial = alone(FetchBall(), (-4.35, 0.0, 0.0), ball=(-3.45, 0.4))
     trial.run(
         12.0,
         eventually("the ball is back", lambda frame: frame.ball.x < -4.05),

@@ -7,11 +7,21 @@ import pytest
 from robobt.motion.pilot import travel_time
 from robobt.skills import GoToBall, PickUpBall
 from robobt.skills.ball.go_to_ball import HANDOVER_DISTANCE, meeting_point
+from robobt.testing import (
+    alone,
+    always,
+    blue,
+    eventually,
+    frame,
+    held,
+    inside_the_field,
+    robot,
+    succeeds,
+)
 from robobt.tree import Sequence, Status
 from robobt.world import Frame, RobotLimits
 from robobt.world.geometry import wrap_angle
-from tests.simulation import Trial, always, blue, eventually, inside_the_field
-from tests.skills.fixed_world import Alone, frame, held, robot, shot_at
+from tests.skills.fixed_world import Alone, shot_at
 
 
 def test_an_unknown_policy_is_refused_by_name() -> None:
@@ -57,10 +67,10 @@ def test_a_rolling_ball_is_met_ahead() -> None:
 @pytest.mark.parametrize("ball", [(2.0, 1.0), (-1.0, -2.0), (-3.2, 0.4)])
 def test_approach_and_pick_up_cost_little_more_than_the_way(ball: tuple[float, float]) -> None:
     tree = Sequence("win the ball", memory=False, children=[GoToBall(), PickUpBall()])
-    trial = Trial({blue(0): tree}, {blue(0): (-2.0, 0.0, 1.0)}, ball=ball)
+    trial = alone(tree, (-2.0, 0.0, 1.0), ball=ball)
     end = trial.run(
         4.0,
-        eventually("it has the ball", lambda _: tree.status is Status.SUCCESS),
+        eventually("it has the ball", succeeds(tree)),
         always("inside the field", inside_the_field),
     )
     way = hypot(ball[0] + 2.0, ball[1]) - 0.1
@@ -70,13 +80,13 @@ def test_approach_and_pick_up_cost_little_more_than_the_way(ball: tuple[float, f
 @pytest.mark.parametrize("velocity", [(1.0, 0.5), (-1.0, 0.3), (0.0, -1.0)])
 def test_it_wins_a_rolling_ball(velocity: tuple[float, float]) -> None:
     tree = Sequence("win the ball", memory=False, children=[GoToBall(), PickUpBall()])
-    trial = Trial({blue(0): tree}, {blue(0): (-2.0, 0.0, 0.0)}, ball=(-0.5, 0.3, *velocity))
-    trial.run(5.0, eventually("it has the ball", lambda _: tree.status is Status.SUCCESS))
+    trial = alone(tree, (-2.0, 0.0, 0.0), ball=(-0.5, 0.3, *velocity))
+    trial.run(5.0, eventually("it has the ball", succeeds(tree)))
 
 
 def test_behind_the_target_it_comes_from_the_far_side_without_moving_the_ball() -> None:
     go = GoToBall(approach="behind_target")
-    trial = Trial({blue(0): go}, {blue(0): (2.0, 0.5, pi)}, ball=(1.0, 0.0))
+    trial = alone(go, (2.0, 0.5, pi), ball=(1.0, 0.0))
     trial.stores[blue(0)].shot = shot_at(4.5, 0.3)
 
     def behind(frame: Frame) -> bool:
@@ -97,5 +107,5 @@ def test_behind_the_target_it_comes_from_the_far_side_without_moving_the_ball() 
 
 def test_a_ball_at_a_wall_is_taken_from_where_one_can() -> None:
     tree = Sequence("win", memory=False, children=[GoToBall(approach="behind_target"), PickUpBall()])
-    trial = Trial({blue(0): tree}, {blue(0): (0.0, 0.0, 0.0)}, ball=(-4.7, 2.0))
-    trial.run(4.0, eventually("it has the ball", lambda _: tree.status is Status.SUCCESS))
+    trial = alone(tree, (0.0, 0.0, 0.0), ball=(-4.7, 2.0))
+    trial.run(4.0, eventually("it has the ball", succeeds(tree)))

@@ -10,11 +10,20 @@ import pytest
 
 from robobt.models.file import ModelError
 from robobt.skills import GoToBall, PickUpBall
+from robobt.testing import (
+    alone,
+    always,
+    eventually,
+    frame,
+    held,
+    inside_the_field,
+    robot,
+    succeeds,
+)
 from robobt.tree import Sequence, Status
 from robobt.world import RobotCommand, RobotLimits
 from tests.models.made_models import Faulty, Straight, go_to_ball_card, network, shoot_card, write_model
-from tests.simulation import Trial, always, blue, eventually, inside_the_field
-from tests.skills.fixed_world import Alone, frame, held, robot
+from tests.skills.fixed_world import Alone
 
 
 @pytest.fixture(scope="module")
@@ -96,9 +105,9 @@ def test_the_shipped_policy_is_asked_for_when_the_leaf_is_made(
 
 def test_with_the_pick_up_it_gets_the_ball(model: str) -> None:
     tree = Sequence("win the ball", memory=False, children=[GoToBall(policy=model), PickUpBall()])
-    trial = Trial({blue(0): tree}, {blue(0): (-2.0, 0.0, 2.0)}, ball=(1.0, 1.0), period=0.03)
+    trial = alone(tree, (-2.0, 0.0, 2.0), ball=(1.0, 1.0), period=0.03)
     trial.run(
         5.0,
-        eventually("it has picked the ball up", lambda _: tree.status is Status.SUCCESS),
+        eventually("it has picked the ball up", succeeds(tree)),
         always("inside the field", inside_the_field),
     )

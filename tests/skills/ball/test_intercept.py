@@ -7,10 +7,19 @@ import pytest
 from robobt.motion.pilot import travel_time
 from robobt.skills import Intercept
 from robobt.skills.ball.intercept import earliest_meeting, meet
+from robobt.testing import (
+    alone,
+    always,
+    eventually,
+    frame,
+    held,
+    inside_the_field,
+    robot,
+    succeeds,
+)
 from robobt.tree import Status
 from robobt.world.ball_model import DEFAULT_BALL
-from tests.simulation import Trial, always, blue, eventually, inside_the_field
-from tests.skills.fixed_world import Alone, frame, held, robot
+from tests.skills.fixed_world import Alone
 
 
 def test_the_meeting_is_the_first_point_reached_in_time() -> None:
@@ -77,9 +86,9 @@ def test_it_succeeds_with_the_ball_in_the_mouth() -> None:
 @pytest.mark.parametrize("preset", ["default", "grsim"])
 def test_it_takes_balls_that_come_by(preset: str, pose: tuple[float, ...], ball: tuple[float, ...]) -> None:
     intercept = Intercept()
-    trial = Trial({blue(0): intercept}, {blue(0): pose}, ball, settings=preset)  # type: ignore[dict-item]
+    trial = alone(intercept, pose, ball, settings=preset)  # type: ignore[dict-item]
     trial.run(
         4.0,
-        eventually("it has the ball", lambda _: intercept.status is Status.SUCCESS),
+        eventually("it has the ball", succeeds(intercept)),
         always("inside the field", inside_the_field),
     )

@@ -7,9 +7,10 @@ from math import pi
 import pytest
 
 from robobt.skills import KickLoose
+from robobt.testing import frame, held, robot
 from robobt.tree import Status
 from robobt.world import RobotState
-from tests.skills.fixed_world import Alone, frame, held, robot
+from tests.skills.fixed_world import Alone
 
 ME = robot(contact=True)
 BALL = held(ME)

@@ -7,13 +7,27 @@ import pytest
 from robobt.skills import KickToTarget
 from robobt.skills.ball.kick_to_target import MAX_CHIP_SPEED, SHOT_SPEED
 from robobt.skills.store import Pass, Shot
+from robobt.testing import (
+    Trial,
+    alone,
+    blue,
+    eventually,
+    frame,
+    goal_for,
+    held,
+    inside_the_field,
+    never,
+    robot,
+    succeeds,
+    touches_a_robot,
+    yellow,
+)
 from robobt.tree import Status
 from robobt.world import Frame, KickTrigger, RobotLimits, Team
 from robobt.world.ball_model import DEFAULT_BALL
 from robobt.world.command import CHIP_ANGLE
 from robobt.world.geometry import wrap_angle
-from tests.simulation import Trial, blue, eventually, goal_for_us, inside_the_field, never, yellow
-from tests.skills.fixed_world import Alone, frame, held, pass_to, robot, shot_at
+from tests.skills.fixed_world import Alone, pass_to, shot_at
 from tests.skills.refereed import OPEN, free_kick
 
 GOAL = (4.5, 0.0)
@@ -142,30 +156,30 @@ def test_before_the_ball_it_goes_round_it() -> None:
 @pytest.mark.parametrize("preset", ["default", "grsim"])
 def test_it_shoots_a_resting_ball_into_the_goal(preset: str, pose: tuple[float, float, float]) -> None:
     kick = KickToTarget()
-    trial = Trial({blue(0): kick}, {blue(0): pose}, (0.0, 0.2), settings=preset)
+    trial = alone(kick, pose, (0.0, 0.2), settings=preset)
     trial.stores[blue(0)].shot = shot_at(4.5, 0.2)
     assert kicked_ball_passes(trial, (4.5, 0.2)) < 2.0
-    trial.run(0.1, eventually("the skill succeeds", lambda _: kick.status is Status.SUCCESS))
-    trial.run(2.0, eventually("the ball is in the goal", goal_for_us()))
+    trial.run(0.1, eventually("the skill succeeds", succeeds(kick)))
+    trial.run(2.0, eventually("the ball is in the goal", goal_for(Team.BLUE)))
     assert len(trial.kicks) == 1
 
 
 @pytest.mark.parametrize("heading", [0.0, 1.0, -2.0, pi])
 def test_with_the_ball_it_turns_and_hits(heading: float) -> None:
     ball = (1.0 + 0.098 * cos(heading), 0.098 * sin(heading))
-    trial = Trial({blue(0): KickToTarget(target=GOAL)}, {blue(0): (1.0, 0.0, heading)}, ball)
+    trial = alone(KickToTarget(target=GOAL), (1.0, 0.0, heading), ball)
     assert kicked_ball_passes(trial, GOAL, 2.0) < 1.0
     assert trial.frames[-1].time < abs(heading) / 4.0 + 0.6
 
 
 @pytest.mark.parametrize("velocity", [(0.6, 0.4), (-0.8, 0.0), (0.0, -1.0)])
 def test_it_shoots_a_rolling_ball(velocity: tuple[float, float]) -> None:
-    trial = Trial({blue(0): KickToTarget(target=GOAL)}, {blue(0): (-1.5, 0.0, 0.0)}, (0.0, 0.2, *velocity))
+    trial = alone(KickToTarget(target=GOAL), (-1.5, 0.0, 0.0), (0.0, 0.2, *velocity))
     assert kicked_ball_passes(trial, GOAL) < 3.0
 
 
 def test_a_ball_at_a_wall_is_taken_off_it_first() -> None:
-    trial = Trial({blue(0): KickToTarget(target=GOAL)}, {blue(0): (-2.0, 0.0, 0.0)}, (-4.75, 2.0))
+    trial = alone(KickToTarget(target=GOAL), (-2.0, 0.0, 0.0), (-4.75, 2.0))
     assert kicked_ball_passes(trial, GOAL, 6.0) < 2.0
 
 
@@ -192,11 +206,11 @@ def test_it_keeps_off_the_wall_and_off_robots_on_its_way() -> None:
     )
     trial.run(
         4.0,
-        eventually("the ball is in the goal", goal_for_us()),
+        eventually("the ball is in the goal", goal_for(Team.BLUE)),
         never("outside the field", lambda frame: not inside_the_field(frame)),
         never(
             "it touches the opponent",
-            lambda f: hypot(f.own[0].x - f.opponents[0].x, f.own[0].y - f.opponents[0].y) < 0.18,
+            touches_a_robot(blue(0)),
         ),
     )
 
@@ -205,11 +219,11 @@ def test_robobulls_style_kicks_too_but_takes_its_time() -> None:
     times = {}
     for style in ("default", "robobulls"):
         kick = KickToTarget(target=GOAL, style=style)  # type: ignore[arg-type]
-        trial = Trial({blue(0): kick}, {blue(0): (-3.9, 0.0, 0.0)}, settings="robobulls", period=0.03)
+        trial = alone(kick, (-3.9, 0.0, 0.0), settings="robobulls", period=0.03)
         trial.run(
             8.0,
-            eventually("the skill succeeds", lambda _, kick=kick: kick.status is Status.SUCCESS),
-            eventually("the ball is in the goal", goal_for_us()),
+            eventually("the skill succeeds", succeeds(kick)),
+            eventually("the ball is in the goal", goal_for(Team.BLUE)),
         )
         times[style] = trial.kicks[0][0]
     assert times["default"] < 0.7 * times["robobulls"]
@@ -239,7 +253,7 @@ def test_a_chip_flies_over_a_robot_and_touches_down_at_its_target(
     kick = KickToTarget(target=target, chip=True, touch_downs=touch_downs)
     robots = {blue(0): (-1.5, 0.0, 0.0), yellow(0): (0.5 * target[0], 0.5 * target[1], pi)}
     trial = Trial({blue(0): kick}, robots, (-0.8, 0.0), settings="default", period=0.005)
-    trial.run(4.0, eventually("the skill succeeds", lambda _: kick.status is Status.SUCCESS))
+    trial.run(4.0, eventually("the skill succeeds", succeeds(kick)))
     down: list[Frame] = []
 
     def touched_down(frame: Frame) -> bool:

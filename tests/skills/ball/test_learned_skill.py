@@ -13,6 +13,18 @@ from robobt.models.file import ModelError
 from robobt.plays.files import VOCABULARY, load_play
 from robobt.skills import HasBall, LearnedSkill
 from robobt.skills.ball.learned_control import LearnedControl
+from robobt.testing import (
+    Trial,
+    alone,
+    always,
+    blue,
+    eventually,
+    frame,
+    has_ball,
+    held,
+    inside_the_field,
+    robot,
+)
 from robobt.tree import Selector, Status
 from robobt.tree.interop import describe_tree, write_yaml
 from robobt.world import RobotCommand
@@ -26,8 +38,7 @@ from tests.models.made_models import (
     shoot_card,
     write_model,
 )
-from tests.simulation import Trial, always, blue, eventually, inside_the_field
-from tests.skills.fixed_world import Alone, frame, held, robot
+from tests.skills.fixed_world import Alone
 
 STILL = RobotCommand()
 
@@ -61,10 +72,10 @@ def test_what_it_observes_can_be_looked_at(tmp_path: Path) -> None:
 
 def test_its_robot_gets_to_the_ball(tmp_path: Path) -> None:
     tree = LearnedSkill(model=str(write_model(tmp_path, Straight())))
-    trial = Trial({blue(0): tree}, {blue(0): (-2.0, 0.0, 2.0)}, ball=(1.0, 1.0), period=0.03)
+    trial = alone(tree, (-2.0, 0.0, 2.0), ball=(1.0, 1.0), period=0.03)
     trial.run(
         5.0,
-        eventually("it touches the ball", lambda seen: seen.own[0].ball_contact),
+        eventually("it touches the ball", has_ball(blue(0))),
         always("inside the field", inside_the_field),
     )
 
@@ -118,7 +129,7 @@ def test_the_other_robots_play_on_when_a_policy_fails(tmp_path: Path) -> None:
     )
     trial.run(
         5.0,
-        eventually("the sound one touches the ball", lambda seen: seen.own[1].ball_contact),
+        eventually("the sound one touches the ball", has_ball(blue(1))),
         always("the faulty one stands", lambda seen: seen.own[0].speed < 0.01),
     )
     assert faulty.status is Status.FAILURE

@@ -9,11 +9,12 @@ import pytest
 from robobt.plays.base import first_of, when
 from robobt.skills import CarriedFar, LetGo, Stop
 from robobt.skills.base import Skill
+from robobt.testing import Trial, always, blue, frame, held, robot
+from robobt.testing.frames import HELD
 from robobt.tree import Behaviour, Status
 from robobt.world import Frame
 from robobt.world.rules import CARRY_DISTANCE, keeps_ball
-from tests.simulation import Trial, always, blue
-from tests.skills.fixed_world import HELD, Alone, frame, held, robot
+from tests.skills.fixed_world import Alone
 
 
 class Sideways(Skill):

@@ -5,11 +5,11 @@ from math import cos, hypot, radians, sin
 import pytest
 
 from robobt.skills import PickUpBall
+from robobt.testing import Trial, blue, eventually, frame, held, robot, succeeds
 from robobt.tree import Status
 from robobt.world import RobotCommand
 from robobt.world.rules import has_ball
-from tests.simulation import Trial, blue, eventually
-from tests.skills.fixed_world import Alone, frame, held, robot
+from tests.skills.fixed_world import Alone
 
 
 def test_it_creeps_forward_with_the_dribbler_on() -> None:
@@ -68,7 +68,7 @@ def test_it_takes_a_resting_ball(preset: str, degrees: int) -> None:
     trial = Trial(
         {blue(0): pick}, {blue(0): (0.0, 0.0, 0.0)}, (0.2 * cos(angle), 0.2 * sin(angle)), settings=preset
     )
-    end = trial.run(1.5, eventually("it has the ball", lambda _: pick.status is Status.SUCCESS))
+    end = trial.run(1.5, eventually("it has the ball", succeeds(pick)))
     assert has_ball(end.own[0], end.ball)
 
 

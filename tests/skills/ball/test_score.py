@@ -11,12 +11,13 @@ from robobt.models.file import ModelError, ModelFile
 from robobt.models.policy import Policy, load_policy
 from robobt.skills import Score
 from robobt.skills.ball import learned_control
+from robobt.testing import frame, robot
 from robobt.tree import Status
 from robobt.world import DIVISION_B, BallState, Frame, GameState, RobotCommand, RobotState
 from robobt.world.game import Team, TeamStatus
 from robobt.world.scoring import SCORE_ON_GOALKEEPER, score_on_goalkeeper_of
 from tests.models.made_models import Faulty, Passing, go_to_ball_card, score_card, write_model
-from tests.skills.fixed_world import Alone, frame, robot
+from tests.skills.fixed_world import Alone
 from tests.skills.side_by_side import the_leaf_does_what_it_does_in_training
 
 

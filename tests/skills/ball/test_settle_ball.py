@@ -5,8 +5,9 @@ from math import nan
 import pytest
 
 from robobt.skills import SettleBall
+from robobt.testing import frame, held, robot
 from robobt.tree import Status
-from tests.skills.fixed_world import Alone, frame, held, robot
+from tests.skills.fixed_world import Alone
 
 
 def fast() -> tuple[float, ...]:

@@ -8,11 +8,21 @@ import pytest
 from robobt.models.file import ModelError
 from robobt.skills import Shoot
 from robobt.skills.ball import shoot
+from robobt.testing import (
+    alone,
+    always,
+    eventually,
+    frame,
+    goal_for,
+    held,
+    inside_the_field,
+    robot,
+)
+from robobt.testing.frames import HELD
 from robobt.tree import Status
-from robobt.world import KickTrigger, RobotCommand
+from robobt.world import KickTrigger, RobotCommand, Team
 from tests.models.made_models import Aimed, Faulty, shoot_card, write_model
-from tests.simulation import Trial, always, blue, eventually, goal_for_us, inside_the_field
-from tests.skills.fixed_world import HELD, Alone, frame, held, robot, shot_at
+from tests.skills.fixed_world import Alone, shot_at
 
 
 @pytest.fixture(scope="module")
@@ -84,10 +94,10 @@ class TestEveryPolicy:
     def test_it_scores_in_the_simulator(self, learned: bool, model: str, heading: float) -> None:
         me = robot(2.0, 0.5, heading)
         tree = self.leaf(learned, model)
-        trial = Trial({blue(0): tree}, {blue(0): (2.0, 0.5, heading)}, held(me), "robobulls", period=0.03)
+        trial = alone(tree, (2.0, 0.5, heading), held(me), "robobulls", period=0.03)
         trial.run(
             6.0,
-            eventually("the ball is in the goal", goal_for_us()),
+            eventually("the ball is in the goal", goal_for(Team.BLUE)),
             always("inside the field", inside_the_field),
         )
 

@@ -5,8 +5,9 @@ from math import pi
 import pytest
 
 from robobt.skills.conditions.ball_aimed_at_goal import BallAimedAtGoal
+from robobt.testing import frame, held, robot
 from robobt.tree import Status
-from tests.skills.fixed_world import Alone, frame, held, robot
+from tests.skills.fixed_world import Alone
 
 ME = robot(-4.3, 0.0)
 

@@ -3,8 +3,9 @@ from __future__ import annotations
 import pytest
 
 from robobt.skills.conditions.ball_at_defense_edge import BallAtDefenseEdge
+from robobt.testing import frame, robot
 from robobt.tree import Status
-from tests.skills.fixed_world import Alone, frame, robot
+from tests.skills.fixed_world import Alone
 
 ME = robot(-4.3, 0.0)
 

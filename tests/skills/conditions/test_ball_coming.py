@@ -3,9 +3,10 @@ from __future__ import annotations
 import pytest
 
 from robobt.skills.conditions.ball_coming import BallComing
+from robobt.testing import frame, robot
 from robobt.tree import Status
 from robobt.world import RobotState
-from tests.skills.fixed_world import Alone, frame, robot
+from tests.skills.fixed_world import Alone
 
 
 def comes(ball: tuple[float, ...], me: RobotState | None = None) -> bool:

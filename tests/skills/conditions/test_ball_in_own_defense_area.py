@@ -1,9 +1,9 @@
 from __future__ import annotations
 
 from robobt.skills import BallInOwnDefenseArea
+from robobt.testing import alone, eventually, frame, robot, succeeds
 from robobt.tree import Status
-from tests.simulation import Trial, blue, eventually
-from tests.skills.fixed_world import Alone, frame, robot
+from tests.skills.fixed_world import Alone
 
 
 def tick(x: float, y: float, margin: float = 0.0) -> Status:
@@ -23,6 +23,6 @@ def test_the_area_can_be_grown() -> None:
 
 def test_a_ball_that_rolls_in_is_noticed() -> None:
     condition = BallInOwnDefenseArea()
-    trial = Trial({blue(0): condition}, {blue(0): (0.0, 2.0, 0.0)}, (-3.0, 0.0, -1.0, 0.0))
-    end = trial.run(2.0, eventually("it is in", lambda _: condition.status is Status.SUCCESS))
+    trial = alone(condition, (0.0, 2.0, 0.0), (-3.0, 0.0, -1.0, 0.0))
+    end = trial.run(2.0, eventually("it is in", succeeds(condition)))
     assert -3.6 < end.ball.x <= -3.5

@@ -1,9 +1,9 @@
 from __future__ import annotations
 
 from robobt.skills import BallInOwnHalf
+from robobt.testing import Trial, blue, eventually, frame, robot, succeeds, yellow
 from robobt.tree import Status
-from tests.simulation import Trial, blue, eventually, yellow
-from tests.skills.fixed_world import Alone, frame, robot
+from tests.skills.fixed_world import Alone
 
 
 def test_the_own_half_ends_at_the_half_way_line() -> None:
@@ -24,5 +24,5 @@ def test_both_teams_see_their_own_half() -> None:
     )
     trial.tick()
     assert (ours.status, theirs.status) == (Status.SUCCESS, Status.FAILURE)
-    trial.run(2.0, eventually("it has crossed over", lambda _: theirs.status is Status.SUCCESS))
+    trial.run(2.0, eventually("it has crossed over", succeeds(theirs)))
     assert ours.status is Status.FAILURE

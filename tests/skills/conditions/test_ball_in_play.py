@@ -3,9 +3,10 @@ from __future__ import annotations
 import pytest
 
 from robobt.skills.conditions.ball_in_play import BallInPlay
+from robobt.testing import frame, robot
 from robobt.tree import Status
 from robobt.world import OPEN_PLAY, GameState, Team
-from tests.skills.fixed_world import Alone, frame, robot
+from tests.skills.fixed_world import Alone
 from tests.skills.refereed import HALT, OPEN, STOP, free_kick, kickoff
 
 

@@ -1,9 +1,9 @@
 from __future__ import annotations
 
 from robobt.skills import BallIsMoving
+from robobt.testing import alone, eventually, fails, frame, robot
 from robobt.tree import Status
-from tests.simulation import Trial, blue, eventually
-from tests.skills.fixed_world import Alone, frame, robot
+from tests.skills.fixed_world import Alone
 
 
 def test_it_compares_the_speed() -> None:
@@ -13,7 +13,7 @@ def test_it_compares_the_speed() -> None:
 
 def test_a_rolling_ball_moves_until_it_rests() -> None:
     condition = BallIsMoving()
-    trial = Trial({blue(0): condition}, {blue(0): (0.0, 2.0, 0.0)}, (0.0, 0.0, 0.5, 0.0))
+    trial = alone(condition, (0.0, 2.0, 0.0), (0.0, 0.0, 0.5, 0.0))
     trial.tick()
     assert condition.status is Status.SUCCESS
-    trial.run(3.0, eventually("it rests", lambda _: condition.status is Status.FAILURE))
+    trial.run(3.0, eventually("it rests", fails(condition)))

@@ -1,8 +1,9 @@
 from __future__ import annotations
 
 from robobt.skills.conditions.ball_rests_in_defense import BallRestsInDefense
+from robobt.testing import frame, held, robot
 from robobt.tree import Status
-from tests.skills.fixed_world import Alone, frame, held, robot
+from tests.skills.fixed_world import Alone
 
 ME = robot(-4.3, 0.0)
 

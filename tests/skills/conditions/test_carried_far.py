@@ -1,8 +1,9 @@
 from __future__ import annotations
 
 from robobt.skills.conditions.carried_far import CarriedFar
+from robobt.testing import frame, held, robot
 from robobt.tree import Status
-from tests.skills.fixed_world import Alone, frame, held, robot
+from tests.skills.fixed_world import Alone
 
 PERIOD = 1 / 60
 

@@ -5,9 +5,9 @@ from math import radians
 from py_trees.common import ParallelPolicy
 
 from robobt.skills import FacesTarget, GoToPose
+from robobt.testing import alone, eventually, frame, robot, succeeds
 from robobt.tree import Parallel, Status
-from tests.simulation import Trial, blue, eventually
-from tests.skills.fixed_world import Alone, frame, robot
+from tests.skills.fixed_world import Alone
 
 
 def test_without_a_target_it_fails() -> None:
@@ -29,5 +29,5 @@ def test_a_robot_that_turns_comes_to_face_it() -> None:
     faces = FacesTarget(target=(0.0, 2.0))
     turn = GoToPose(target=(0.0, 0.0), heading=radians(90.0))
     tree = Parallel("turn", policy=ParallelPolicy.SuccessOnOne(), children=[turn, faces])
-    trial = Trial({blue(0): tree}, {blue(0): (0.0, 0.0, 0.0)}, (2.0, 0.0))
-    trial.run(2.0, eventually("it faces the target", lambda _: faces.status is Status.SUCCESS))
+    trial = alone(tree, (0.0, 0.0, 0.0), (2.0, 0.0))
+    trial.run(2.0, eventually("it faces the target", succeeds(faces)))

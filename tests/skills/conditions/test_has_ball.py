@@ -3,9 +3,9 @@ from __future__ import annotations
 from math import hypot
 
 from robobt.skills import GoToBall, HasBall, PickUpBall
+from robobt.testing import alone, eventually, frame, held, robot, succeeds
 from robobt.tree import Selector, Sequence, Status
-from tests.simulation import Trial, blue, eventually
-from tests.skills.fixed_world import Alone, frame, held, robot
+from tests.skills.fixed_world import Alone
 
 
 def test_it_holds_with_the_ball_in_the_mouth_only() -> None:
@@ -18,6 +18,6 @@ def test_a_robot_that_went_and_took_the_ball_has_it() -> None:
     has_ball = HasBall()
     win = Sequence("win the ball", memory=False, children=[GoToBall(), PickUpBall()])
     tree = Selector("ball", memory=False, children=[has_ball, win])
-    trial = Trial({blue(0): tree}, {blue(0): (-1.0, 0.0, 0.0)})
-    end = trial.run(3.0, eventually("it has the ball", lambda _: has_ball.status is Status.SUCCESS))
+    trial = alone(tree, (-1.0, 0.0, 0.0))
+    end = trial.run(3.0, eventually("it has the ball", succeeds(has_ball)))
     assert hypot(end.ball.x - end.own[0].x, end.ball.y - end.own[0].y) < 0.14

@@ -1,10 +1,10 @@
 from __future__ import annotations
 
 from robobt.skills import GoToPose, IsClosestToBall
+from robobt.testing import Trial, blue, eventually, frame, robot, succeeds
 from robobt.tree import Sequence, Status
 from robobt.world import RobotState
-from tests.simulation import Trial, blue, eventually
-from tests.skills.fixed_world import Alone, frame, robot
+from tests.skills.fixed_world import Alone
 
 MATE = robot(0.0, 1.0, number=1)
 OPPONENT = robot(0.0, 0.5)
@@ -34,4 +34,4 @@ def test_a_robot_that_comes_up_becomes_the_closest() -> None:
     closest = IsClosestToBall()
     tree = Sequence("come", memory=True, children=[GoToPose(target=(0.5, 0.0)), closest])
     trial = Trial({blue(0): tree}, {blue(0): (3.0, 0.0, 0.0), blue(1): (-1.0, 0.0, 0.0)})
-    trial.run(4.0, eventually("it is the closest", lambda _: closest.status is Status.SUCCESS))
+    trial.run(4.0, eventually("it is the closest", succeeds(closest)))

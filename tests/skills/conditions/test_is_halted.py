@@ -3,9 +3,10 @@ from __future__ import annotations
 import pytest
 
 from robobt.skills.conditions.is_halted import IsHalted
+from robobt.testing import frame, robot
 from robobt.tree import Status
 from robobt.world import GameState, RefereeCommand
-from tests.skills.fixed_world import Alone, frame, robot
+from tests.skills.fixed_world import Alone
 
 HALTED = {RefereeCommand.HALT, RefereeCommand.TIMEOUT_BLUE, RefereeCommand.TIMEOUT_YELLOW}
 

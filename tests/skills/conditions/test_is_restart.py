@@ -3,9 +3,10 @@ from __future__ import annotations
 import pytest
 
 from robobt.skills.conditions.is_restart import IsRestart
+from robobt.testing import frame, robot
 from robobt.tree import Status
 from robobt.world import GameState, Restart, Team
-from tests.skills.fixed_world import Alone, frame, robot
+from tests.skills.fixed_world import Alone
 from tests.skills.refereed import HALT, OPEN, STOP, free_kick, kickoff, penalty_in_play, stop_before
 
 SPOT = (1.0, 1.0)

@@ -4,9 +4,10 @@ import pytest
 
 from robobt.plays.baselines.is_attacker import IsAttacker
 from robobt.skills.conditions.may_touch_ball import MayTouchBall
+from robobt.testing import frame, robot
 from robobt.tree import Sequence, Status
 from robobt.world import GameState, Restart, RobotId, Team
-from tests.skills.fixed_world import Alone, frame, robot
+from tests.skills.fixed_world import Alone
 from tests.skills.refereed import HALT, OPEN, STOP, free_kick, kickoff, stop_before
 
 SPOT = (1.0, 1.0)

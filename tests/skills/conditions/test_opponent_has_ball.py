@@ -3,9 +3,9 @@ from __future__ import annotations
 from math import pi
 
 from robobt.skills import DribbleTo, OpponentHasBall
+from robobt.testing import Trial, always, blue, frame, held, robot, succeeds, yellow
 from robobt.tree import Status
-from tests.simulation import Trial, always, blue, yellow
-from tests.skills.fixed_world import Alone, frame, held, robot
+from tests.skills.fixed_world import Alone
 
 
 def test_it_holds_for_opponents_only() -> None:
@@ -24,4 +24,4 @@ def test_it_holds_while_an_opponent_carries_the_ball() -> None:
         {blue(0): (0.0, 2.0, 0.0), yellow(1): (0.0, 0.0, pi)},
         (-0.0975, 0.0),
     )
-    trial.run(1.0, always("they have the ball", lambda _: watcher.status is Status.SUCCESS))
+    trial.run(1.0, always("they have the ball", succeeds(watcher)))

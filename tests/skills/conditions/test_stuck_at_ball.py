@@ -3,8 +3,9 @@ from __future__ import annotations
 import pytest
 
 from robobt.skills.conditions.stuck_at_ball import StuckAtBall
+from robobt.testing import frame, held, robot
 from robobt.tree import Status
-from tests.skills.fixed_world import Alone, frame, held, robot
+from tests.skills.fixed_world import Alone
 
 PERIOD = 1 / 60
 BESIDE = (0.093, -0.07)

@@ -3,9 +3,9 @@ from __future__ import annotations
 from math import pi
 
 from robobt.skills import DribbleTo, TeamHasBall
+from robobt.testing import Trial, always, blue, frame, held, robot, succeeds
 from robobt.tree import Status
-from tests.simulation import Trial, always, blue
-from tests.skills.fixed_world import Alone, frame, held, robot
+from tests.skills.fixed_world import Alone
 
 ME = robot(0.0, 0.0, 0.0, number=0)
 MATE = robot(1.0, 0.0, 0.0, number=1)
@@ -39,4 +39,4 @@ def test_it_holds_while_a_mate_carries_the_ball() -> None:
         {blue(0): (0.0, 2.0, 0.0), blue(1): (0.0, 0.0, 0.0)},
         (0.0975, 0.0),
     )
-    trial.run(1.0, always("a mate has the ball", lambda _: watcher.status is Status.SUCCESS))
+    trial.run(1.0, always("a mate has the ball", succeeds(watcher)))

@@ -3,8 +3,9 @@ from __future__ import annotations
 import pytest
 
 from robobt.skills.conditions.under_pressure import UnderPressure
+from robobt.testing import frame, robot
 from robobt.tree import Status
-from tests.skills.fixed_world import Alone, frame, robot
+from tests.skills.fixed_world import Alone
 
 
 @pytest.mark.parametrize(("gap", "pressed"), [(0.29, True), (0.31, False)])

@@ -6,10 +6,10 @@ import pytest
 
 from robobt.motion.pilot import ROBOBULLS_LIMITS
 from robobt.skills.defence.block_shot import BlockShot
+from robobt.testing import Trial, alone, blue, eventually, frame, goal_for, robot
 from robobt.tree import Status
-from robobt.world import DIVISION_B, RobotLimits, RobotState
-from tests.simulation import Trial, blue, eventually, goal_for_them
-from tests.skills.fixed_world import Alone, frame, moved, robot
+from robobt.world import DIVISION_B, RobotLimits, RobotState, Team
+from tests.skills.fixed_world import Alone, moved
 
 TARGET = (-4.41, 0.3)
 BALL = (-2.0, 0.3)
@@ -55,7 +55,7 @@ def test_it_catches_with_the_dribbler_unless_told_otherwise() -> None:
 
 
 def test_it_stops_a_slow_ball() -> None:
-    trial = Trial({blue(0): BlockShot()}, {blue(0): (-4.3, 0.0, 0.0)}, ball=(-2.5, 0.3, -2.0, 0.0))
+    trial = alone(BlockShot(), (-4.3, 0.0, 0.0), ball=(-2.5, 0.3, -2.0, 0.0))
     trial.stores[blue(0)].target = TARGET
     trial.run(3.0, eventually("the ball no longer comes", lambda frame: frame.ball.vx > -0.05))
     assert trial.frames[-1].ball.x > -DIVISION_B.half_length
@@ -73,7 +73,7 @@ def test_a_robot_that_brakes_slowly_saves_by_diving_what_it_could_not_otherwise(
     )
     trial.stores[blue(0)].target = (-4.41, 0.35)
     trial.run(1.0)
-    assert any(map(goal_for_them(), trial.frames)) is not dive
+    assert any(map(goal_for(Team.YELLOW), trial.frames)) is not dive
 
 
 def test_with_time_enough_it_does_not_dive() -> None:

@@ -3,9 +3,9 @@ from __future__ import annotations
 from math import pi
 
 from robobt.skills.defence.challenge_ball import ChallengeBall
+from robobt.testing import held, robot
 from robobt.tree import Status
 from robobt.world.geometry import distance, wrap_angle
-from tests.skills.fixed_world import held, robot
 from tests.skills.refereed import OPEN, Drive
 
 

@@ -7,9 +7,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from robobt.skills.defence.close_down import CloseDown
+from robobt.testing import frame, robot
 from robobt.tree import Status
 from robobt.world import RobotState
-from tests.skills.fixed_world import Alone, frame, moved, robot
+from tests.skills.fixed_world import Alone, moved
 
 
 def settled(

@@ -7,10 +7,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from robobt.skills.defence.cover_angle import CoverAngle
+from robobt.testing import frame, robot
 from robobt.tree import Status
 from robobt.world import DIVISION_B, RobotState
 from robobt.world.rules import in_own_defense_area
-from tests.skills.fixed_world import Alone, frame, moved, robot
+from tests.skills.fixed_world import Alone, moved
 
 
 def settled(ball: tuple[float, float], **parameters: float) -> RobotState:

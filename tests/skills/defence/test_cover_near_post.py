@@ -3,9 +3,10 @@ from __future__ import annotations
 import pytest
 
 from robobt.skills.defence.cover_near_post import CoverNearPost
+from robobt.testing import frame, robot
 from robobt.tree import Status
 from robobt.world.geometry import segment_distance
-from tests.skills.fixed_world import Alone, frame, moved, robot
+from tests.skills.fixed_world import Alone, moved
 
 
 def test_it_stands_between_the_ball_and_the_near_post() -> None:

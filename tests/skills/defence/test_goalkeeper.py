@@ -8,10 +8,11 @@ import pytest
 
 from robobt.models.file import ModelError
 from robobt.skills import Goalkeeper
+from robobt.testing import frame, robot
 from robobt.tree import Status
 from robobt.world import RobotCommand
 from tests.models.made_models import Faulty, network, team_card, write_model
-from tests.skills.fixed_world import Alone, frame, robot
+from tests.skills.fixed_world import Alone
 from tests.skills.side_by_side import the_leaf_does_what_it_does_in_training
 
 

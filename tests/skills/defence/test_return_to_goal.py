@@ -3,8 +3,9 @@ from __future__ import annotations
 import pytest
 
 from robobt.skills.defence.return_to_goal import ReturnToGoal
+from robobt.testing import frame, robot
 from robobt.tree import Status
-from tests.skills.fixed_world import Alone, frame, moved, robot
+from tests.skills.fixed_world import Alone, moved
 
 
 def test_it_goes_home_and_faces_the_field() -> None:

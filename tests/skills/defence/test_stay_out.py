@@ -2,9 +2,10 @@ from __future__ import annotations
 
 from robobt.skills.base import Skill
 from robobt.skills.defence.stay_out import StayOut
+from robobt.testing import frame, robot
 from robobt.tree import Status
 from robobt.world import RobotCommand
-from tests.skills.fixed_world import Alone, frame, robot
+from tests.skills.fixed_world import Alone
 from tests.skills.refereed import OPEN
 
 

@@ -5,10 +5,10 @@ from math import hypot
 import pytest
 
 from robobt.skills.defence.wall import Wall
+from robobt.testing import robot
 from robobt.world import DIVISION_B
 from robobt.world.geometry import segment_distance
 from robobt.world.rules import in_own_defense_area
-from tests.skills.fixed_world import robot
 from tests.skills.refereed import OPEN, Drive
 
 BALLS = [(0.0, 0.0), (-2.0, 2.5), (-4.0, -2.5), (3.0, -1.0), (-4.4, 2.9)]

@@ -6,8 +6,9 @@ import pytest
 
 from robobt.skills.restarts.go_to_kickoff_position import GoToKickoffPosition
 from robobt.skills.store import TeamStore
+from robobt.testing import frame, robot
 from robobt.world import Team
-from tests.skills.fixed_world import Alone, frame, robot
+from tests.skills.fixed_world import Alone
 from tests.skills.refereed import Drive, kickoff
 
 

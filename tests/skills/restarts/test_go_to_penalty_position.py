@@ -3,8 +3,8 @@ from __future__ import annotations
 import pytest
 
 from robobt.skills.restarts.go_to_penalty_position import GoToPenaltyPosition
+from robobt.testing import robot
 from robobt.world import DIVISION_B, Team
-from tests.skills.fixed_world import robot
 from tests.skills.refereed import Drive, penalty, penalty_in_play
 
 OURS = (-1.5, 0.0)

@@ -5,10 +5,10 @@ from math import hypot
 import pytest
 
 from robobt.skills.restarts.keep_distance import KeepDistance
+from robobt.testing import robot
 from robobt.tree import Status
 from robobt.world import Restart, Team
 from robobt.world.geometry import segment_distance
-from tests.skills.fixed_world import robot
 from tests.skills.refereed import STOP, Drive, free_kick, placement, stop_before
 
 CLEAR = 0.5 + 0.09

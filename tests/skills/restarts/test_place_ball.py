@@ -5,12 +5,11 @@ from math import hypot, pi
 import pytest
 
 from robobt.skills.restarts.place_ball import PlaceBall
+from robobt.testing import Trial, blue, robot
 from robobt.tree import Status
 from robobt.world import GameState, RefereeCommand, Restart, Team
 from robobt.world.geometry import Point
 from robobt.world.state import Frame
-from tests.simulation import Trial, blue
-from tests.skills.fixed_world import robot
 from tests.skills.refereed import STOP, Drive, free_kick, placement
 
 

@@ -6,10 +6,11 @@ import pytest
 
 from robobt.skills.restarts.prepare_restart import PrepareRestart
 from robobt.skills.store import Pass
+from robobt.testing import frame, robot
 from robobt.tree import Status
 from robobt.world import DIVISION_B, FieldGeometry, Restart, Team
 from robobt.world.geometry import direction, wrap_angle
-from tests.skills.fixed_world import Alone, frame, moved, robot
+from tests.skills.fixed_world import Alone, moved
 from tests.skills.refereed import OPEN, Drive, free_kick, kickoff, penalty, stop_before
 
 SPOTS = [(1.0, 2.8), (4.3, 2.8), (4.3, -2.8), (-3.5, 2.8), (0.0, 0.0)]

@@ -4,9 +4,10 @@ import pytest
 
 from robobt.skills import KeepDistance, Stop
 from robobt.skills.restarts.referee_switch import Phase, RefereeSwitch, phase
+from robobt.testing import frame, robot
 from robobt.tree import Status
 from robobt.world import OPEN_PLAY, GameState, RefereeCommand, Restart, Team
-from tests.skills.fixed_world import Alone, frame, robot
+from tests.skills.fixed_world import Alone
 from tests.skills.refereed import HALT, OPEN, STOP, free_kick, kickoff, penalty, stop_before
 
 SPOT = (1.0, 1.0)

@@ -8,9 +8,10 @@ from robobt.skills.robobulls.detour import allowed, first_waypoint
 from robobt.skills.robobulls.kick import ROBOBULLS_KICK_SPEED, RobobullsKick, Stage
 from robobt.skills.robobulls.pilot import robobulls_drive
 from robobt.skills.store import Store
+from robobt.testing import frame, robot
 from robobt.tree import Status
 from robobt.world import DIVISION_B, KickTrigger, RobotState
-from tests.skills.fixed_world import frame, moved, robot
+from tests.skills.fixed_world import moved
 
 GOAL = (4.5, 0.0)
 PERIOD = 0.03

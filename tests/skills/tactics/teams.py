@@ -7,9 +7,9 @@ from collections.abc import Sequence
 from robobt.skills.plan import Plan
 from robobt.skills.store import TeamStore
 from robobt.skills.tactics.agree import agree
+from robobt.testing import frame, robot
 from robobt.world import GameState, RobotState
 from robobt.world.records import Mover, mover_records, movers
-from tests.skills.fixed_world import frame, robot
 from tests.skills.refereed import OPEN
 
 SIX = (

@@ -12,12 +12,12 @@ from robobt.skills.tactics.agree import pass_under_way
 from robobt.skills.tactics.attacker import NOBODY, Candidate, choose_attacker
 from robobt.skills.tactics.chances import rate_points
 from robobt.skills.tactics_settings import DEFAULT_TACTICS, TacticsSettings, applied
+from robobt.testing import frame, held, robot
 from robobt.world import DIVISION_B, RobotLimits, Team
 from robobt.world.ball_model import DEFAULT_BALL
 from robobt.world.geometry import Point, distance
 from robobt.world.records import MOVER
 from robobt.world.rules import in_own_defense_area, in_their_defense_area
-from tests.skills.fixed_world import frame, held, robot
 from tests.skills.refereed import OPEN, free_kick, penalty, penalty_in_play
 from tests.skills.tactics.teams import SIX, THEIRS, Agreement
 

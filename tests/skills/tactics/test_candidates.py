@@ -10,11 +10,11 @@ from robobt.skills.store import TeamStore
 from robobt.skills.tactics.agree import agree
 from robobt.skills.tactics.candidates import passes
 from robobt.skills.tactics_settings import DEFAULT_TACTICS
+from robobt.testing import frame, held, robot
 from robobt.world import DIVISION_B, GameState, RobotState, Team
 from robobt.world.game import TeamStatus
 from robobt.world.geometry import Point, distance
 from robobt.world.rules import in_their_defense_area
-from tests.skills.fixed_world import frame, held, robot
 from tests.skills.refereed import OPEN, free_kick
 
 ME = robot(-1.0, 0.0, number=1, contact=True)

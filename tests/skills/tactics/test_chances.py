@@ -15,11 +15,11 @@ from robobt.skills.tactics.chances import (
     shot_chance,
 )
 from robobt.skills.tactics_settings import DEFAULT_TACTICS, TACTICS, applied
+from robobt.testing import robot
 from robobt.world import DIVISION_B
 from robobt.world.ball_model import DEFAULT_BALL
 from robobt.world.geometry import wrap_angle
 from robobt.world.records import Mover
-from tests.skills.fixed_world import robot
 from tests.skills.tactics.teams import records_of
 
 APPLIED = applied(DEFAULT_TACTICS, DIVISION_B, DEFAULT_BALL).view(TACTICS)[0]

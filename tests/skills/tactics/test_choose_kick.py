@@ -8,10 +8,11 @@ import pytest
 from robobt.skills.tactics.agree import agree
 from robobt.skills.tactics.choose_kick import ChooseKick
 from robobt.skills.tactics_settings import TacticsSettings
+from robobt.testing import frame, held, robot
 from robobt.tree import Status
 from robobt.world import GameState, RobotState, Team
 from robobt.world.geometry import segment_distance
-from tests.skills.fixed_world import Alone, frame, held, robot
+from tests.skills.fixed_world import Alone
 from tests.skills.refereed import OPEN, free_kick
 
 KEEPER = robot(4.2, 0.0, number=0)

@@ -4,8 +4,8 @@ import pytest
 
 from robobt.skills.tactics.defence import threats
 from robobt.skills.tactics_settings import DEFAULT_TACTICS
+from robobt.testing import frame, robot
 from robobt.world import RobotState
-from tests.skills.fixed_world import frame, robot
 
 KEEPER = robot(-4.3, 0.0, number=0)
 

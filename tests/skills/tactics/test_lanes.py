@@ -17,9 +17,9 @@ from robobt.skills.tactics.lanes import (
     time_to_pass,
 )
 from robobt.skills.tactics_settings import DEFAULT_TACTICS, TACTICS, applied
+from robobt.testing import robot
 from robobt.world import DIVISION_B
 from robobt.world.ball_model import DEFAULT_BALL
-from tests.skills.fixed_world import robot
 from tests.skills.tactics.teams import records_of
 
 NOBODY = records_of()

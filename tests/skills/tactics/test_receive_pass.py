@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 from robobt.skills.tactics.receive_pass import ReceivePass
+from robobt.testing import Trial, blue, frame, held, robot
 from robobt.tree import Status
 from robobt.world import RobotLimits
 from robobt.world.rules import has_ball
-from tests.simulation import Trial, blue
-from tests.skills.fixed_world import Alone, frame, held, robot
+from tests.skills.fixed_world import Alone
 from tests.skills.refereed import OPEN
 
 

@@ -9,10 +9,11 @@ from robobt.match.scenario.changes import changed, with_team
 from robobt.skills import Stop
 from robobt.skills.tactics.task_switch import TaskSwitch
 from robobt.skills.tactics_settings import DEFAULT_TACTICS, TACTICS, TacticsSettings, applied
+from robobt.testing import frame, robot
 from robobt.tournament.sweeps.vary import SweepError, read_varied
 from robobt.world import DIVISION_B, RobotState, Team
 from robobt.world.ball_model import DEFAULT_BALL
-from tests.skills.fixed_world import Alone, frame, robot
+from tests.skills.fixed_world import Alone
 from tests.skills.refereed import OPEN
 from tests.skills.tactics.teams import SIX, Agreement
 

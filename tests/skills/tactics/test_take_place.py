@@ -5,10 +5,11 @@ from pathlib import Path
 import pytest
 
 from robobt.skills.tactics.take_place import TakePlace
+from robobt.testing import frame, robot
 from robobt.tree import Status
 from robobt.world.geometry import distance
 from tests.models.made_models import Onward, among_robots_card, write_model
-from tests.skills.fixed_world import Alone, frame, moved, robot
+from tests.skills.fixed_world import Alone, moved
 from tests.skills.refereed import OPEN
 
 

@@ -5,9 +5,10 @@ import pytest
 from robobt.skills import Stop
 from robobt.skills.plan import Task
 from robobt.skills.tactics.task_switch import Part, TaskSwitch
+from robobt.testing import frame, robot
 from robobt.tree import Status
 from robobt.world import GameState, Restart, Team
-from tests.skills.fixed_world import Alone, frame, robot
+from tests.skills.fixed_world import Alone
 from tests.skills.refereed import (
     HALT,
     OPEN,

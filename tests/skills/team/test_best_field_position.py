@@ -5,11 +5,12 @@ from hypothesis import strategies as st
 
 from robobt.skills.aim.raters import OpenAngle
 from robobt.skills.team.best_field_position import BestFieldPosition
+from robobt.testing import frame, held, robot
 from robobt.tree import Status
 from robobt.world import DIVISION_A, DIVISION_B, FieldGeometry, Frame, RobotState
 from robobt.world.geometry import Point, distance
 from robobt.world.rules import in_their_defense_area
-from tests.skills.fixed_world import Alone, frame, held, robot
+from tests.skills.fixed_world import Alone
 
 ME = robot(0.0, 0.0)
 TINY = FieldGeometry(length=2.0, width=1.2, goal_width=0.4, defense_width=0.6, defense_depth=0.3)

@@ -3,9 +3,10 @@ from __future__ import annotations
 from math import pi
 
 from robobt.skills.team.mate_aims_at_me import MateAimsAtMe
+from robobt.testing import frame, held, robot
 from robobt.tree import Status
 from robobt.world import RobotState
-from tests.skills.fixed_world import Alone, frame, held, robot
+from tests.skills.fixed_world import Alone
 
 ME = robot(2.0, 0.0, number=0)
 

@@ -3,9 +3,10 @@ from __future__ import annotations
 import pytest
 
 from robobt.skills.team.pass_is_coming import PassIsComing
+from robobt.testing import frame, held, robot
 from robobt.tree import Status
 from robobt.world import Frame
-from tests.skills.fixed_world import Alone, frame, held, robot
+from tests.skills.fixed_world import Alone
 
 ME = robot(1.0, 1.0, number=0)
 BALL = (0.0, 0.0, 3.0, 3.0)

@@ -5,10 +5,10 @@ import pytest
 
 from robobt.skills.aim.raters.openings import disc_shadow, free_intervals, goal_mouth
 from robobt.skills.team.position_grid import clusters, lane_shadow, position_grid, shot_path
+from robobt.testing import robot
 from robobt.world import DIVISION_A, DIVISION_B, ROBOT_RADIUS, FieldGeometry, RobotState
 from robobt.world.geometry import Point, segment_distance
 from robobt.world.rules import in_their_defense_area
-from tests.skills.fixed_world import robot
 
 GRID = position_grid(DIVISION_B, 0.1)
 SCENES = [robot(2.5, 0.0), robot(1.0, 1.2), robot(3.0, -0.7), robot(0.3, -2.5)]

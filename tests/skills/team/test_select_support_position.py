@@ -4,11 +4,12 @@ from hypothesis import strategies as st
 
 from robobt.skills.aim.pass_rater import PassRater
 from robobt.skills.team.select_support_position import SelectSupportPosition
+from robobt.testing import frame, held, robot
 from robobt.tree import Status
 from robobt.world import DIVISION_A, DIVISION_B, FieldGeometry, Frame, RobotState
 from robobt.world.geometry import Point, distance, segment_distance
 from robobt.world.rules import in_their_defense_area
-from tests.skills.fixed_world import Alone, frame, held, robot
+from tests.skills.fixed_world import Alone
 
 HOLDER = robot(1.0, 0.0, number=1)
 BALL = held(HOLDER)

@@ -5,8 +5,8 @@ import pytest
 
 from robobt.skills.aim.raters import ExpectedGoal
 from robobt.skills.aim.raters.goal_line import goal_candidates
+from robobt.testing import frame, held, robot
 from robobt.world import DIVISION_B, RobotState
-from tests.skills.fixed_world import frame, held, robot
 
 ME = robot(2.6, 0.0, contact=True)
 BALL = held(ME)

@@ -5,8 +5,8 @@ import pytest
 
 from robobt.skills.aim.raters import Gaussian
 from robobt.skills.aim.raters.openings import goal_mouth
+from robobt.testing import frame, robot
 from robobt.world import BALL_RADIUS, DIVISION_B
-from tests.skills.fixed_world import frame, robot
 
 ME, BALL = robot(1.9, 0.0), (2.0, 0.0)
 RATER = Gaussian()

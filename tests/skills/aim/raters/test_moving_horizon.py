@@ -4,8 +4,8 @@ from hypothesis import strategies as st
 
 from robobt.skills.aim.raters import MovingHorizon, OpenAngle
 from robobt.skills.aim.raters.moving_horizon import extent
+from robobt.testing import frame, robot
 from robobt.world import RobotLimits, RobotState
-from tests.skills.fixed_world import frame, robot
 
 ME, BALL = robot(1.9, 0.0), (2.0, 0.0)
 

@@ -5,8 +5,8 @@ import pytest
 
 from robobt.skills.aim.raters import NNFiltered, SegmentClearance
 from robobt.skills.aim.raters.goal_line import goal_candidates
+from robobt.testing import frame, robot
 from robobt.world import DIVISION_B
-from tests.skills.fixed_world import frame, robot
 
 ME = robot(2.6, 0.0)
 BALL = (2.7, 0.0)

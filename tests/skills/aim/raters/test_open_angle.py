@@ -4,8 +4,8 @@ import pytest
 
 from robobt.skills.aim.raters import OpenAngle
 from robobt.skills.aim.raters.openings import disc_shadow, free_intervals, goal_mouth
+from robobt.testing import frame, robot
 from robobt.world import BALL_RADIUS, DIVISION_B, ROBOT_RADIUS
-from tests.skills.fixed_world import frame, robot
 
 ME, BALL = robot(1.9, 0.0), (2.0, 0.0)
 

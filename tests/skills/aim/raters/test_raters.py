@@ -9,10 +9,9 @@ from hypothesis import strategies as st
 
 from robobt.skills.aim.raters import RATERS, NNFiltered, SegmentClearance, ShotRater, make_rater
 from robobt.skills.store import Shot
-from robobt.world import DIVISION_A, DIVISION_B, BallState, FieldGeometry, Frame, RobotState
+from robobt.testing import Trial, blue, eventually, frame, goal_for, robot, yellow
+from robobt.world import DIVISION_A, DIVISION_B, BallState, FieldGeometry, Frame, RobotState, Team
 from robobt.world.geometry import Point
-from tests.simulation import Trial, blue, eventually, goal_for_us, yellow
-from tests.skills.fixed_world import frame, robot
 
 NAMES = sorted(RATERS)
 BOLD: dict[str, ShotRater] = {"nn_filtered": NNFiltered(threshold=0.05, tolerance=0.2)}
@@ -144,7 +143,7 @@ def test_a_ball_kicked_at_the_target_past_a_keeper_at_rest_is_a_goal(
     dx, dy = shot.target[0] - ball[0], shot.target[1] - ball[1]
     way = hypot(dx, dy)
     trial = Trial({}, poses, (*ball, 6.0 * dx / way, 6.0 * dy / way))
-    trial.run(2.0, eventually("the ball is in the goal", goal_for_us()))
+    trial.run(2.0, eventually("the ball is in the goal", goal_for(Team.BLUE)))
 
 
 def test_the_learned_veto_lets_fewer_shots_pass_the_likelier_they_are_to_fail() -> None:

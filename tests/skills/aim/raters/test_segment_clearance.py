@@ -7,9 +7,9 @@ from hypothesis import strategies as st
 
 from robobt.skills.aim.raters import SegmentClearance
 from robobt.skills.aim.raters.goal_line import goal_candidates, lane_clearances, runs
+from robobt.testing import frame, robot
 from robobt.world import DIVISION_A, DIVISION_B
 from robobt.world.geometry import segment_distance
-from tests.skills.fixed_world import frame, robot
 
 
 def test_a_goal_of_one_metre_has_the_papers_94_target_points_10_mm_apart() -> None:

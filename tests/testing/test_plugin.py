@@ -1,0 +1,133 @@
+"""The fixtures that pytest finds wherever robobt is installed, and the functions behind them."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from importlib.metadata import EntryPoint
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from robobt.skills import FaceBall, HasBall, Skill, Store
+from robobt.testing import Ticker, frame, held, robot
+from robobt.tree import Status, TreeError, Wait
+
+ROOT = Path(__file__).parents[2]
+S, F, R = Status.SUCCESS, Status.FAILURE, Status.RUNNING
+
+MakeStore = Callable[..., Store]
+
+
+class Raises(Skill):
+    """Divides by where the ball is."""
+
+    def on_running(self) -> Status:
+        return self.succeed(str(1 / self.ball.x))
+
+
+def test_a_store_has_a_robot_and_a_ball_before_it(make_store: MakeStore) -> None:
+    store = make_store()
+    assert (store.me.id, store.me.position, store.frame.ball.position) == (0, (0.0, 0.0), (1.0, 0.0))
+
+
+def test_a_store_has_the_frame_robot_and_entries_it_is_made_with(make_store: MakeStore) -> None:
+    seen = frame(robot(number=2), mates=(robot(1.0, number=4),), time=3.0)
+    assert make_store(seen).me.id == 2
+    store = make_store(seen, 4, target=(2.0, 1.0))
+    assert (store.me.x, store.time, store.target) == (1.0, 3.0, (2.0, 1.0))
+
+
+def test_a_store_needs_a_robot_on_the_field(make_store: MakeStore) -> None:
+    with pytest.raises(ValueError, match="robot 5 is not on the field"):
+        make_store(number=5)
+    with pytest.raises(ValueError, match="there is no robot"):
+        make_store(replace(frame(robot()), own=()))
+
+
+def test_a_skill_is_ticked_once_on_each_frame(tick_on: Ticker) -> None:
+    me = robot(1.0)
+    assert tick_on(HasBall(), [frame(me, held(me)), frame(me, (3.0, 0.0))]) == [S, F]
+
+
+def test_a_second_call_goes_on_where_the_first_ended(tick_on: Ticker) -> None:
+    wait = Wait(seconds=1.0)
+    frames = [frame(robot(), time=time) for time in (5.0, 5.5, 6.0)]
+    assert [tick_on(wait, [one]) for one in frames] == [[R], [R], [S]]
+
+
+def test_another_store_begins_anew(tick_on: Ticker, make_store: MakeStore) -> None:
+    wait, late = Wait(seconds=1.0), [frame(robot(), time=time) for time in (5.0, 6.0)]
+    assert tick_on(wait, late[:1]) == [R]
+    assert tick_on(wait, late[1:], make_store()) == [R]
+
+
+def test_the_command_is_in_the_store_and_stands_still_before_each_tick(
+    tick_on: Ticker, make_store: MakeStore
+) -> None:
+    store = make_store()
+    assert tick_on(FaceBall(), [frame(robot(), (0.0, 2.0))], store) == [R]
+    assert store.command.omega > 0.0
+    me = robot()
+    tick_on(HasBall(), [frame(me, held(me))], store)
+    assert store.command.omega == 0.0
+
+
+def test_the_robot_is_the_stores(tick_on: Ticker, make_store: MakeStore) -> None:
+    me, mate = robot(number=1), robot(2.0, number=3)
+    seen = frame(me, held(mate), mates=(mate,))
+    assert tick_on(HasBall(), [seen]) == [F]
+    assert tick_on(HasBall(), [seen], make_store(seen, 3)) == [S]
+
+
+def test_a_skill_that_raises_fails_the_test(tick_on: Ticker) -> None:
+    with pytest.raises(TreeError, match="Raises: ZeroDivisionError"):
+        tick_on(Raises(), [frame(robot())])
+
+
+def pytest_in(folder: Path, *options: str) -> str:
+    """What pytest says in a folder, told of the plugin by the name that the entry point has."""
+    command = [sys.executable, "-m", "pytest", "-q", "-p", "robobt.testing.plugin", *options]
+    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
+    return done.stdout + done.stderr
+
+
+def test_the_entry_point_has_the_name_that_keeps_it_from_being_loaded_twice() -> None:
+    import tomllib
+
+    project: Mapping[str, Any] = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
+    ((name, value),) = project["entry-points"]["pytest11"].items()
+    assert name == value
+    assert EntryPoint(name, value, "pytest11").load().__name__ == "robobt.testing.plugin"
+
+
+def test_the_plugin_imports_nothing_heavy() -> None:
+    code = (
+        "import robobt.testing.plugin, sys\n"
+        "print({'numpy', 'py_trees', 'pydantic', 'numba', 'torch', 'robobt.skills'} & set(sys.modules))"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout == "set()\n"
+
+
+@pytest.mark.integration
+def test_the_example_of_the_page_is_a_test_that_passes(tmp_path: Path) -> None:
+    page = (ROOT / "docs" / "testing.md").read_text()
+    (skill, test) = page.split("```python\n")[1:3]
+    for name, block in (("circle_ball.py", skill), ("test_circle_ball.py", test)):
+        (tmp_path / name).write_text(block.partition("```")[0])
+    assert "5 passed" in pytest_in(tmp_path)
+
+
+@pytest.mark.integration
+def test_the_example_of_the_page_fails_when_the_skill_is_wrong(tmp_path: Path) -> None:
+    page = (ROOT / "docs" / "testing.md").read_text()
+    (skill, test) = [block.partition("```")[0] for block in page.split("```python\n")[1:3]]
+    (tmp_path / "circle_ball.py").write_text(skill.replace("radius: float = 0.6", "radius: float = 0.05"))
+    (tmp_path / "test_circle_ball.py").write_text(test)
+    said = pytest_in(tmp_path)
+    assert "not always: not: it touches the ball" in said
+    assert "trial.py" not in said, "the failure is shown in the test, not inside of robobt"
