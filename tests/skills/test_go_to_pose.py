@@ -24,6 +24,7 @@ from robobt.testing import (
     never,
     robot,
     succeeds,
+    touches_a_robot,
     yellow,
 )
 from robobt.tree import Status
@@ -108,16 +109,12 @@ def test_it_arrives_round_robots_and_ball_and_turned() -> None:
         ball=(0.3, 0.0),
     )
 
-    def touched(frame: Frame) -> bool:
-        me = frame.own[0]
-        return any(hypot(other.x - me.x, other.y - me.y) < 0.18 for other in frame.opponents)
-
     end = trial.run(
         4.0,
         eventually("it has arrived", succeeds(go)),
         always("inside the field", inside_the_field),
         always("the ball lies still", lambda frame: frame.ball.speed == 0.0),
-        never("it touches a robot", touched),
+        never("it touches a robot", touches_a_robot(blue(0))),
     )
     assert abs(end.own[0].heading - pi / 2) < 0.04
 

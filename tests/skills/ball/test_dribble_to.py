@@ -10,7 +10,9 @@ from robobt.testing import (
     Trial,
     alone,
     always,
+    ball_near,
     blue,
+    dribbles_too_far,
     eventually,
     fails,
     frame,
@@ -102,15 +104,22 @@ def test_it_carries_no_farther_than_allowed() -> None:
     assert alone.tree.feedback_message == "the ball has been carried as far as allowed"
 
 
+def test_it_gives_up_before_the_referee_would_call_it_too_far() -> None:
+    dribble = DribbleTo(target=(3.0, 0.0), max_distance=1.0)
+    alone(dribble, (0.0, 0.0, 0.0), (MOUTH, 0.0)).run(
+        5.0,
+        eventually("it gives up", fails(dribble)),
+        eventually("it has come some way", lambda frame: frame.ball.x > 0.9),
+        never("it dribbles too far", dribbles_too_far(blue(0))),
+    )
+
+
 @pytest.mark.parametrize("target", [(2.0, 0.0), (-2.0, 0.5), (0.0, -2.0)])
 def test_it_brings_the_ball_anywhere(target: tuple[float, float]) -> None:
     trial = alone(DribbleTo(target=target), (0.0, 0.0, 0.0), (MOUTH, 0.0))
     trial.run(
         5.0,
-        eventually(
-            "the ball is there",
-            lambda frame: hypot(frame.ball.x - target[0], frame.ball.y - target[1]) <= 0.3,
-        ),
+        eventually("the ball is there", ball_near(target, 0.3)),
         always("the robot has the ball", carrying),
     )
 
@@ -123,12 +132,9 @@ def test_it_carries_the_ball_round_an_opponent() -> None:
     )
     trial.run(
         5.0,
-        eventually("the ball is there", lambda frame: hypot(frame.ball.x - 2.0, frame.ball.y) <= 0.3),
+        eventually("the ball is there", ball_near((2.0, 0.0), 0.3)),
         always("the robot has the ball", carrying),
-        never(
-            "it touches the opponent",
-            touches_a_robot(blue(0)),
-        ),
+        never("it touches the opponent", touches_a_robot(blue(0))),
     )
 
 

@@ -10,6 +10,7 @@ from robobt.skills.store import Pass, Shot
 from robobt.testing import (
     Trial,
     alone,
+    always,
     blue,
     eventually,
     frame,
@@ -207,11 +208,8 @@ def test_it_keeps_off_the_wall_and_off_robots_on_its_way() -> None:
     trial.run(
         4.0,
         eventually("the ball is in the goal", goal_for(Team.BLUE)),
-        never("outside the field", lambda frame: not inside_the_field(frame)),
-        never(
-            "it touches the opponent",
-            touches_a_robot(blue(0)),
-        ),
+        always("inside the field", inside_the_field),
+        never("it touches the opponent", touches_a_robot(blue(0))),
     )
 
 
