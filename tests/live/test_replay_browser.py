@@ -31,13 +31,13 @@ def recording(tmp_path_factory: pytest.TempPathFactory) -> Recording:
 
 
 def test_what_a_game_controller_says_is_shown(page: Page, recording: Recording, tmp_path: Path) -> None:
-    status = TeamStatus(keeper=4, max_robots=5, yellow_cards=1)
+    status = TeamStatus(keeper=0, max_robots=5, yellow_cards=1)
     game = GameState(RefereeCommand.STOP, upcoming=RefereeCommand.PREPARE_PENALTY_YELLOW, blue=status)
     write_html(replace(recording, games=[(0, game)]), tmp_path / "m.html")
     page.open((tmp_path / "m.html").as_uri())
     said = page.find("#stage").text
-    assert said.startswith("Normal first half · next prepare penalty yellow · blue: goalkeeper 4")
-    assert "at most 5 robots, 1 yellow" in said
+    assert said == "Normal first half · next: penalty for yellow · blue: 1 yellow card, so at most 5 robots"
+    assert page.find("#who-play").text == "attack_main, goalkeeper"
 
 
 @pytest.fixture
@@ -138,6 +138,43 @@ def test_a_condition_that_does_not_hold_is_no_failure(
     assert conditions
     assert {tree["states"][place] for place in conditions} == {"N"}
     assert all(tree["states"][place] == "F" for place in actions)
+
+
+def test_a_folded_branch_tells_why_it_failed(page: Page, recording: Recording, tmp_path: Path) -> None:
+    robot = recording.header.robots[0]
+    names = [node.name for node in robot.tree]
+    tick = next(tick for tick, letters in recording.letters[0] if letters[names.index("score")] == "F")
+    at_tick(page, recording, tmp_path, tick)
+    rows = "return [...document.querySelectorAll('#tree .row .say')].map(say => say.textContent)"
+    said = page.js(rows)[names.index("score")]
+    ends = next(
+        place for place in range(names.index("score") + 1, len(names)) if robot.tree[place].depth == 1
+    )
+    inside = range(names.index("score") + 1, ends)
+    letters = recording.letters_at(robot.id, tick)
+    decided = [names[place] for place in inside if letters[place] == "F"]
+    assert decided
+    assert decided[-1] in said.rpartition(" · ")[2]
+
+
+def test_the_tree_fills_its_column(page: Page, recording: Recording, tmp_path: Path) -> None:
+    page.size(1100, 757)
+    at_tick(page, recording, tmp_path, 100)
+    assert page.js("return document.querySelector('#tree').getBoundingClientRect().height") > 300
+    below = (
+        "return innerHeight - document.querySelector('aside').lastElementChild.getBoundingClientRect().bottom"
+    )
+    assert page.js(below) < 40
+    page.size(1400, 900)
+
+
+def test_colours_and_signs_are_explained(page: Page, recording: Recording, tmp_path: Path) -> None:
+    tree = at_tick(page, recording, tmp_path, 100)
+    named = "return [...document.querySelectorAll('#inks span')].map(entry => entry.textContent)"
+    assert recording.header.robots[0].tree[tree["active"]].name in page.js(named)
+    page.js("document.querySelectorAll('#tree .row')[0].click()")
+    assert set(page.js(named)) <= {"running", "success", "failure", "does not hold"}
+    assert page.find("#drawn").text == ""
 
 
 def test_a_free_kick_is_over_once_the_ball_is_in_play(

@@ -94,7 +94,7 @@ def test_a_robot_is_shown_in_the_view_of_its_own_team_as_its_outputs_are(recordi
     """Times its view, a robot's place is where its own team sees it: the frame its skills write in."""
     robots = page_data(recording)["robots"]
     assert {(robot["team"], robot["view"]) for robot in robots} == {("blue", 1), ("yellow", -1)}
-    assert "own goal at" in replay_html(recording)
+    assert "x grows towards the goal that it attacks" in replay_html(recording)
 
 
 def test_the_page_holds_every_status_and_every_word(recording: Recording) -> None:

@@ -102,6 +102,10 @@ def test_a_robot_is_given_another_play_by_the_form(live: Page, session: Session)
     live.find("#picker .pick.blue:nth-of-type(3)").click()
     live.button("Edit play").click()
     live.wait("return document.querySelector('.forms select[name=play]') !== null")
+    seen = """const form = document.querySelector('.forms form').getBoundingClientRect();
+      const column = document.querySelector('aside').getBoundingClientRect();
+      return form.top < column.bottom && form.bottom <= column.bottom + 1;"""
+    assert live.js(seen), "the form is out of sight"
     live.js("document.querySelector('.forms select[name=play]').value = 'stand_still'")
     live.button("Apply").click()
     live.wait("return document.querySelector('#who-play').textContent === 'stand_still'")

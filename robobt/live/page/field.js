@@ -17,7 +17,9 @@ export const look = (zoom, x, y) => {
 export const fit = () => {
   view.worldWidth = match.field.length + 2 * match.field.goal_line_margin; view.worldHeight = match.field.width + 2 * match.field.margin;
   const stage = canvas.parentElement;
-  const most = Math.max(220, (window.innerHeight - (document.querySelector(".chart:not([hidden])") ? 465 : 285)) * view.worldWidth / view.worldHeight);
+  /* As high as the window leaves room below what else stands on the card. */
+  const card = stage.parentElement, others = card.getBoundingClientRect().top + window.scrollY + card.offsetHeight - canvas.offsetHeight;
+  const most = Math.max(220, (window.innerHeight - others - 24) * view.worldWidth / view.worldHeight);
   const wide = matchMedia("(max-width: 1020px)").matches ? stage.clientWidth : Math.min(stage.clientWidth, most);
   view.dpr = window.devicePixelRatio || 1;
   view.width = Math.max(60, Math.floor(wide)); view.whole = view.width / view.worldWidth;
@@ -137,6 +139,7 @@ const outlined = (text, x, y, ink = "#fff") => {
 const drawCompared = (robot, frame, from) => {
   if (!asked(robot, robot.compares, frame)) return;
   const passes = valueAt(robot.compared, frame, []);
+  if (passes.length) draws("passes");
   passes.map((pass, rank) => [pass, rank]).reverse().forEach(([[x, y, score], rank]) => {
     const u = px(robot.view * x), v = py(robot.view * y);
     pen.globalAlpha = rank ? .45 : .95; pen.strokeStyle = pen.fillStyle = "#fff"; pen.lineWidth = rank ? 1 : 2;
@@ -147,6 +150,11 @@ const drawCompared = (robot, frame, from) => {
 };
 /* What skills draw themselves, each layer in a colour of its own. */
 const INKS = ["#7fe3ff", "#ffd166", "#ff9ad5", "#b9ff8a", "#ffb38a", "#c9b6ff", "#8affd8", "#ffffff"];
+/* What was drawn at some time of this match; the page tells what it means. */
+const drawn = new Set();
+let drawnIn = null;
+const draws = name => { drawn.add(name); };
+export const drawnSoFar = () => drawn;
 export const inkOf = layer => INKS[[...match.layers].sort().indexOf(layer) % INKS.length] || INKS[0];
 const drawShape = ([layer, kind, x, y, u, v], side) => {
   const a = px(side * x), b = py(side * y);
@@ -179,23 +187,25 @@ const drawPlans = (frame, places) => {
     pen.strokeStyle = colours[team]; pen.lineWidth = 2; pen.setLineDash([3, 4]);
     for (const [marker, marked] of Object.entries(marks || {})) {
       const a = placeOf(team, marker), b = placeOf(others, marked);
-      if (a && b) { pen.beginPath(); pen.moveTo(px(a.x), py(a.y)); pen.lineTo(px(b.x), py(b.y)); pen.stroke(); }
+      if (a && b) { draws("marking"); pen.beginPath(); pen.moveTo(px(a.x), py(a.y)); pen.lineTo(px(b.x), py(b.y)); pen.stroke(); }
     }
     pen.setLineDash([]);
     const [number, x, y] = meets || [], attacker = robots.find(robot => robot.team === team && robot.number === number);
     const from = attacker && placeOf(team, number);
     if (from) {
+      draws("meeting");
       const u = px(attacker.view * x), v = py(attacker.view * y);
       pen.beginPath(); pen.moveTo(px(from.x), py(from.y)); pen.lineTo(u, v); pen.stroke();
       pen.beginPath(); pen.moveTo(u - 5, v - 5); pen.lineTo(u + 5, v + 5); pen.moveTo(u - 5, v + 5); pen.lineTo(u + 5, v - 5); pen.stroke();
     }
-    (threats || []).forEach((number, rank) => { const at = placeOf(others, number); if (at) outlined(`!${rank + 1}`, px(at.x) + .13 * view.scale, py(at.y) - .13 * view.scale); });
+    (threats || []).forEach((number, rank) => { const at = placeOf(others, number); if (at) draws("threats"), outlined(`!${rank + 1}`, px(at.x) + .13 * view.scale, py(at.y) - .13 * view.scale); });
   }
 };
 /* The goal line as robots judge it, red for no chance to green for a sure goal, with the lanes to it. */
 const drawJudged = (robot, [reach, text], from) => {
   const F = match.field, chances = new Uint8Array(buffer(text)), count = chances.length;
   if (!count) return;
+  draws("goal line");
   const side = robot.team === "blue" ? 1 : -1, x = px(side * F.length / 2), step = 2 * reach / 1000 / Math.max(1, count - 1);
   const deep = side * Math.min(F.goal_depth, .14) * view.scale, top = i => py(side * (i * step - reach / 1000 - step / 2));
   const shade = chance => `hsl(${1.25 * chance} 95% ${48 + .1 * chance}%)`;
@@ -222,11 +232,13 @@ export const drawMatch = () => {
   const { ball, games, robots, times } = match, N = match.frames;
   pen.setTransform(view.dpr, 0, 0, view.dpr, 0, 0);
   drawField();
+  if (drawnIn !== match.robots) { drawnIn = match.robots; drawn.clear(); }
   if (!N) return;
   const frame = frameOf(state.time), gap = frame + 1 < N ? times[frame + 1] - times[frame] : 0;
   const share = gap > 0 ? Math.min(1, Math.max(0, (state.time - times[frame]) / gap)) : 0;
   const game = valueAt(games, frame, null);
   if (game && game.placement) {
+    draws("placement");
     pen.beginPath(); pen.arc(px(game.placement[0]), py(game.placement[1]), .15 * view.scale, 0, 7);
     pen.setLineDash([4, 4]); pen.strokeStyle = colours.ball; pen.lineWidth = 1.5; pen.stroke(); pen.setLineDash([]);
   }

@@ -1,7 +1,6 @@
 /* Beside the field: robots to choose from, the chosen one's tree and figures, what happened. */
 import { $, clock, make, put, words } from "./base.js";
 import { ABSENT, match, state, valueAt } from "./match.js";
-import { readingAt } from "./reading.js";
 import { drawBase } from "./timeline.js";
 import { buildTree, showTree } from "./tree.js";
 
@@ -18,7 +17,7 @@ const plain = value => {
   if (typeof value === "number") return String(Math.round(value * 1000) / 1000);
   if (Array.isArray(value)) return value.map(plain).join(", ");
   if (typeof value === "object") return Object.entries(value).map(([key, item]) => `${key} ${plain(item)}`).join(", ");
-  return String(value);
+  return String(value).replace(/_/g, " ");
 };
 export const outcomeChips = outcome => Object.entries(outcome).map(([key, value]) => chip(words(key).toLowerCase(), plain(value)));
 /* Name what is shown; the chips say how it ended or goes. */
@@ -43,13 +42,14 @@ export const buildFigures = figures => {
 export const buildPicker = () => {
   const { robots } = match, picker = $("picker");
   picker.replaceChildren();
+  let group = null;
   picks = robots.map((robot, slot) => {
-    if (slot && robot.team !== robots[slot - 1].team) picker.append(make("span", "gap"));
+    if (!slot || robot.team !== robots[slot - 1].team) picker.append(group = make("div", "team"));
     const button = make("button", "pick " + robot.team, String(robot.number));
     button.title = robot.name + (robot.play ? ", " + robot.play : "");
     button.setAttribute("aria-label", button.title);
     button.addEventListener("click", () => choose(robot));
-    picker.append(button);
+    group.append(button);
     return button;
   });
 };
@@ -57,7 +57,7 @@ export const choose = robot => {
   state.robot = robot; state.node = null;
   picks.forEach((button, slot) => button.setAttribute("aria-pressed", String(match.robots[slot] === robot)));
   $("who").hidden = !robot;
-  if (robot) { $("who-name").textContent = words(robot.name); $("who-play").textContent = robot.play; }
+  if (robot) { put($("who-name"), words(robot.name)); put($("who-play"), robot.play); }
   buildTree(); drawBase(); state.show();
   dispatchEvent(new Event("chosen"));
 };
@@ -65,9 +65,11 @@ export const choose = robot => {
 /* ---------------------------------------------------------------- figures */
 const told = value => Array.isArray(value) ? `(${value.map(told).join(", ")})`
   : typeof value === "number" ? String(Number.isInteger(value) ? value : Number(value.toPrecision(3)))
-    : value === null ? "none" : typeof value === "object" ? Object.entries(value).map(([key, item]) => `${key} ${told(item)}`).join(", ") : String(value);
+    : value === null ? "none" : typeof value === "object" ? Object.entries(value).map(([key, item]) => `${entryName(key)} ${told(item)}`).join(", ") : String(value);
+/* Entries are named as Python has them: pass_ is one because pass is a word of the language. */
+const entryName = entry => entry.replace(/_+$/, "").replace(/_/g, " ");
 const wroteOf = (robot, frame) => [...robot.written].map(([entry, changes]) => [entry, valueAt(changes, frame, null)])
-  .filter(([, value]) => value !== null).map(([entry, value]) => `${entry} ${told(value)}`).join(" · ");
+  .filter(([, value]) => value !== null).map(([entry, value]) => `${entryName(entry)} ${told(value)}`).join(" · ");
 export const showPanel = frame => {
   picks.forEach((button, slot) => button.classList.toggle("gone", !match.frames || match.robots[slot].rows[4 * frame] === ABSENT));
   const robot = state.robot;
@@ -78,11 +80,11 @@ export const showPanel = frame => {
   put($("f-speed"), here ? (speed / 1000).toFixed(2) + " m/s" : "–");
   put($("f-place"), here ? `${(side * x / 1000).toFixed(2)}, ${(side * y / 1000).toFixed(2)} m` : "off the field");
   put($("f-heading"), here ? Math.round((turn / 1000 * 180 / Math.PI + (side < 0 ? 360 : 180)) % 360 - 180) + "°" : "–");
-  put($("f-ball"), (flags & 1 ? "in the mouth" : "–") + (flags & 4 ? ", kicks" : flags & 2 ? ", dribbles" : ""));
+  put($("f-ball"), (flags & 1 ? "has it" : "away") + (flags & 4 ? ", kicks" : flags & 2 ? ", dribbles" : ""));
   $("f-ball").classList.toggle("on", Boolean(flags & 1));
-  const { marks } = readingAt(robot, frame);
   put($("wrote"), wroteOf(robot, frame));
-  put($("why"), robot.nodes.map((node, i) => marks[i] === "F" && node.kind === "leaf" ? valueAt(robot.said[i], frame, "") && `${node.name}: ${valueAt(robot.said[i], frame, "")}` : "").filter(Boolean).join(" · "));
+  const game = valueAt(match.games, frame, null), keeps = game && game.teams.some(({ team, keeper }) => team === robot.team && keeper === robot.number);
+  put($("who-play"), [robot.play, keeps && "goalkeeper"].filter(Boolean).join(", "));
   showTree(frame);
 };
 

@@ -2,6 +2,7 @@
 import { $, clock, make, put, readColours, words } from "./base.js";
 import { drawChart, drawChartBase } from "./chart.js";
 import { canvas, drawMatch, fit, look, robotAt, spotOf, view } from "./field.js";
+import { explainDrawn } from "./layers.js";
 import { endTime, frameOf, match, scoreOf, startTime, state, valueAt } from "./match.js";
 import { buildEvents, buildPicker, choose, showEvents, showPanel } from "./panel.js";
 import { drawBase, drawLine, fitLine, line, listenLine } from "./timeline.js";
@@ -13,12 +14,14 @@ export const SPEEDS = [0.25, 0.5, 1, 2, 4, 8];
 
 /* ---------------------------------------------------------------- showing */
 const STOPPED = /^(HALT|TIMEOUT)/, STARTED = /START$|_FREE/, WAITING = /^(STOP|PREPARE|BALL_PLACEMENT)/;
-/* What a game controller says besides: where none does, no goalkeeper is named. */
+/* What a game controller says besides, as far as it is news; where none speaks, no goalkeeper is named. */
+const orderOf = command => { const [, order, team] = /^(?:PREPARE_)?(.*?)(?:_(BLUE|YELLOW))?$/.exec(command); return words(order).toLowerCase() + (team ? ` for ${team.toLowerCase()}` : ""); };
+const cardsOf = (count, colour) => count ? `${count} ${colour} card${count > 1 ? "s" : ""}` : "";
 const stageOf = ({ stage, upcoming, teams, happened }) => teams.some(team => team.keeper !== null) ? [
-  words(stage), upcoming && `next ${words(upcoming).toLowerCase()}`,
-  ...teams.map(({ team, keeper, most, yellow, red, substituting }) => `${team}: ` + [
-    keeper !== null && `goalkeeper ${keeper}`, most !== null && `at most ${most} robots`, yellow && `${yellow} yellow`, red && `${red} red`, substituting && "substitutes",
-  ].filter(Boolean).join(", ")), happened.length && happened.map(name => name.replace(/_/g, " ")).join(", "),
+  words(stage), upcoming && `next: ${orderOf(upcoming)}`,
+  ...teams.map(({ team, most, yellow, red, substituting }) => [team, [
+    cardsOf(yellow, "yellow"), cardsOf(red, "red"), (yellow || red) && most !== null && `so at most ${most} robots`, substituting && "substitutes a robot",
+  ].filter(Boolean).join(", ")]).filter(([, news]) => news).map(([team, news]) => `${team}: ${news}`), happened.length && happened.map(name => name.replace(/_/g, " ")).join(", "),
 ].filter(Boolean).join(" · ") : "";
 let shownGame;
 const show = () => {
@@ -45,7 +48,7 @@ const show = () => {
     else $("clock").replaceChildren(clock(state.time), make("span", "", ` / ${clock(endTime())}${remote.toggle ? "" : ` · frame ${frame + 1}`}`));
   }
   line.setAttribute("aria-valuenow", state.time.toFixed(2)); line.setAttribute("aria-valuetext", clock(state.time));
-  showPanel(frame); showEvents(); drawMatch(); drawLine(); drawChart();
+  showPanel(frame); showEvents(); drawMatch(); explainDrawn(); drawLine(); drawChart();
 };
 state.show = show;
 

@@ -1,5 +1,5 @@
 /* What the statuses of a robot's nodes come to: which leaf is active, and which failures are only guards that do not hold. */
-import { lettersOf } from "./match.js";
+import { lettersOf, valueAt } from "./match.js";
 
 const MOST = 4000, known = new WeakMap();
 const parentsOf = nodes => {
@@ -29,5 +29,19 @@ export const readingOf = (robot, letters) => {
   let reading = own.readings.get(letters);
   if (!reading) own.readings.set(letters, reading = read(robot.nodes, own.parents, letters));
   return reading;
+};
+/* Why a branch failed: what went wrong in it, last the leaf that decided it, found by the last child that failed. */
+export const reasonOf = (robot, place, frame) => {
+  const { nodes } = robot, letters = lettersOf(robot, frame), wrong = [];
+  let decided = place;
+  for (let i = place + 1; i < nodes.length && nodes[i].depth > nodes[place].depth; i++) if (letters[i] === "F" && nodes[i].kind === "leaf" && !nodes[i].condition) wrong.push(i);
+  for (let found = place; found >= 0;) {
+    decided = found; found = -1;
+    for (let i = decided + 1; i < nodes.length && nodes[i].depth > nodes[decided].depth; i++) if (nodes[i].depth === nodes[decided].depth + 1 && letters[i] === "F") found = i;
+  }
+  return [...wrong.filter(i => i !== decided), decided].map(i => {
+    const said = valueAt(robot.said[i], frame, "");
+    return i === place ? said : `${nodes[i].name}${said ? `: ${said}` : nodes[i].condition ? " does not hold" : " failed"}`;
+  }).join(" · ");
 };
 export const readingAt = (robot, frame) => readingOf(robot, lettersOf(robot, frame) || "-".repeat(robot.nodes.length));

@@ -193,6 +193,8 @@ const showForm = (form, plays, steers) => {
     if (input) input[input.type === "checkbox" ? "checked" : "value"] = value;
   }
   forms.append(made);
+  /* It stands below the buttons, often out of sight. */
+  if (!same) made.scrollIntoView({ block: "nearest" });
   if (focused && made.elements[focused]) made.elements[focused].focus();
 };
 

@@ -1,5 +1,5 @@
 /* The line of time with the strip of a node's statuses. */
-import { $, clock, colours, words } from "./base.js";
+import { $, clock, colours, make, words } from "./base.js";
 import { view } from "./field.js";
 import { endTime, frameOf, match, startTime, state } from "./match.js";
 import { readingAt, readingOf } from "./reading.js";
@@ -17,6 +17,27 @@ export const fitLine = () => {
   lineWidth = line.clientWidth; lineHeight = line.clientHeight;
   for (const each of [track, base]) { each.width = Math.round(lineWidth * view.dpr); each.height = Math.round(lineHeight * view.dpr); }
 };
+/* What the strip's colours mean: the leaves that were active, or the statuses of the chosen node. */
+const inks = new WeakMap();
+/* In the order of their first use, so that the few leaves of a match are well apart. */
+const inkOfLeaf = (robot, place) => {
+  if (!inks.has(robot)) inks.set(robot, new Map());
+  const known = inks.get(robot);
+  if (!known.has(place)) known.set(place, known.size);
+  return `hsl(${(205 + known.get(place) * 137.5) % 360} 58% 56%)`;
+};
+const STATUSES = { R: "running", S: "success", F: "failure", N: "does not hold" };
+let listedInks = "";
+const listInks = named => {
+  const text = JSON.stringify(named);
+  if (text === listedInks) return;
+  listedInks = text;
+  $("inks").replaceChildren(...named.map(([colour, name]) => {
+    const entry = make("span", "", name), ink = make("i");
+    ink.style.background = colour; entry.prepend(ink);
+    return entry;
+  }));
+};
 export const drawBase = () => {
   under.setTransform(view.dpr, 0, 0, view.dpr, 0, 0);
   under.clearRect(0, 0, lineWidth, lineHeight);
@@ -29,19 +50,21 @@ export const drawBase = () => {
     const { frames, values } = robot.statuses;
     /* Without a chosen node each leaf has a colour of its own while it is the active one. */
     const letter = index => { const { marks, active } = readingOf(robot, values[index]); return state.node === null ? active : marks[state.node]; };
-    const colourOf = it => state.node !== null ? paint[it] : it < 0 ? "" : `hsl(${195 + (it * 53) % 130} 58% 56%)`;
+    const colourOf = it => state.node !== null ? paint[it] : it < 0 ? "" : inkOfLeaf(robot, it), used = new Set();
     for (let i = 0; i < frames.length;) {
       let j = i + 1;
       while (j < frames.length && letter(j) === letter(i)) j++;
       const colour = colourOf(letter(i));
       if (colour) {
+        used.add(letter(i));
         const from = lineX(match.times[frames[i]]), to = j < frames.length ? lineX(match.times[frames[j]]) : right;
         under.fillStyle = colour; under.fillRect(from, RIBBON, Math.max(.3, to - from), 9);
       }
       i = j;
     }
     under.restore();
-  }
+    listInks([...used].sort((a, b) => a - b).map(it => [colourOf(it), state.node !== null ? STATUSES[it] : robot.nodes[it].name]));
+  } else listInks([]);
   under.fillStyle = colours.edge; under.beginPath(); under.roundRect(PAD, RAIL - 2, lineWidth - 2 * PAD, 4, 2); under.fill();
   for (const event of match.events) {
     const x = lineX(event.time);

@@ -1,8 +1,8 @@
 /* The chosen robot's tree: the way to the active leaf is open, the rest folds, unless somebody folds it otherwise. */
 import { $, make, put } from "./base.js";
 import { state, valueAt } from "./match.js";
-import { readingAt } from "./reading.js";
-import { drawBase, drawLine } from "./timeline.js";
+import { readingAt, reasonOf } from "./reading.js";
+import { drawBase } from "./timeline.js";
 
 let lines = [], folds = new Map(), whole = false, unfolded = null; /* unfolded: for which active leaf it is laid out */
 const SVG = shape => `<svg viewBox="0 0 12 12" class="m-${shape[0]}"><path d="${shape[1]}"/></svg>`;
@@ -17,7 +17,7 @@ const below = (nodes, i) => {
   while (j < nodes.length && nodes[j].depth > nodes[i].depth) j++;
   return j - i - 1;
 };
-const pickNode = i => { state.node = state.node === i ? null : i; markNode(); drawBase(); drawLine(); };
+const pickNode = i => { state.node = state.node === i ? null : i; markNode(); drawBase(); state.show(); };
 const rowOf = (nodes, i) => {
   const node = nodes[i], row = make("button", "row " + node.kind), inner = below(nodes, i);
   for (let depth = 1; depth <= node.depth; depth++) {
@@ -36,10 +36,10 @@ const rowOf = (nodes, i) => {
   row.title = [node.type, node.detail].filter(Boolean).join(", ");
   row.addEventListener("click", event => {
     if (event.target !== fold || !inner) { pickNode(i); return; }
-    folds.set(i, row.classList.contains("open"));
+    folds.set(i, lines[i].open);
     unfolded = null; state.show();
   });
-  return { row, say, fold, inner, status: "", text: "" };
+  return { row, say, fold, inner, open: false, status: "", text: "" };
 };
 export const buildTree = () => {
   const robot = state.robot, tree = $("tree");
@@ -66,7 +66,7 @@ const layOut = (nodes, reading) => {
     if (depth <= hidden) hidden = Infinity;
     row.hidden = depth > hidden;
     const open = whole ? !folds.get(i) : folds.has(i) ? !folds.get(i) : reading.path.has(i);
-    row.classList.toggle("open", open); row.classList.toggle("active", i === reading.active);
+    entry.open = open; row.classList.toggle("active", i === reading.active);
     if (inner) put(fold, open ? "▾" : `▸ ${inner}`);
     if (!open && hidden === Infinity && inner) hidden = depth;
   });
@@ -78,16 +78,18 @@ const scrollTo = row => {
 };
 export const showTree = frame => {
   const robot = state.robot, reading = readingAt(robot, frame), { marks, active } = reading;
+  const fresh = lines.length && (unfolded === null || unfolded !== active);
+  if (fresh) layOut(robot.nodes, reading);
   lines.forEach((entry, i) => {
     const status = marks[i] || "-";
     if (status !== entry.status) { entry.status = status; entry.row.dataset.s = status; }
-    const text = status === "-" ? "" : valueAt(robot.said[i], frame, "");
+    /* What is folded away tells here why it failed. */
+    const failed = entry.inner && !entry.open && (status === "F" || status === "N");
+    const text = status === "-" || entry.row.hidden ? "" : failed ? reasonOf(robot, i, frame) : valueAt(robot.said[i], frame, "");
     if (text !== entry.text) { entry.text = text; entry.say.textContent = text; }
   });
-  if (unfolded !== null && unfolded === active) return;
+  if (!fresh) return;
   unfolded = active;
-  if (!lines.length) return;
-  layOut(robot.nodes, reading);
   if (state.node === null) put($("strip"), active < 0 ? "active leaf" : `active leaf, ${robot.nodes[active].name}`);
   if (active >= 0) scrollTo(lines[active].row);
 };
