@@ -204,10 +204,11 @@ def match(
     goals: for blue and yellow total, and trials: in how many it scored (count, rate, low, high);
     time: seconds a trial; in_play: share of the time with the ball in play;
     robots: for each robot go_to_ball, shoot and total (seconds) and kicks, each
-    with n, mean and variance, errors (ticks its tree failed) and first_error;
+    with n, mean and variance, errors (ticks its tree failed) and first_error, and always_failed (the node
+    and the reason where its tree failed in every tick);
     teams: with a referee, for blue and yellow the figures of 'robobt record statistics', each with n, mean
     and variance;
-    real_time_factor: simulated over computing time, a core; trace: a hash that
+    real_time_factor: simulated time over wall time, in each process; trace: a hash that
     is equal for equal runs; replay: the file written, or null.
 
     Exit code 3 when a robot's tree failed in some tick, though all trials were played.

@@ -48,7 +48,8 @@ def print_summary(summary: Summary, run: Run, requested: int) -> None:
     goals = ", ".join([f"{team} {count.total}" for team, count in summary.goals.items()])
     say(
         f"Goals: {goals}. Mean time {summary.time.mean:.1f} s, ball in play {summary.in_play:.0%} of it. "
-        f"{pace:.{0 if pace >= 10.0 else 1}f} times real time a core. Trace {summary.trace}."
+        f"By wall clock {pace:.{0 if pace >= 10.0 else 1}f} times faster than real time in each process. "
+        f"Trace {summary.trace}."
     )
 
 
@@ -61,6 +62,9 @@ def tell_failures(summary: Summary, on_error: str) -> bool:
             f"[red]{name}: its tree failed in {robot.errors} ticks[/red]; the first: {escape(first)}",
             soft_wrap=True,
         )
+    for name, robot in summary.robots.items():
+        if robot.always_failed and name not in failed:
+            warn(f"{name} did nothing: its tree failed in every tick; {robot.always_failed}")
     if failed:
         ending = "" if on_error == "raise" else "; --on-error raise ends the run at the first failure"
         warn(f"trees failed, so the exit status is {TREES_FAILED}{ending}")

@@ -217,7 +217,10 @@ class MatchLoop(Closing):
             yellow_score=self._judge.scores[Team.YELLOW],
             in_play=measures.in_play / max(1, measures.ticks),
             ticks=measures.ticks,
-            robots={str(robot): replace(figures) for robot, figures in measures.robots.items()},
+            robots={
+                str(it.robot): replace(measures.robots[it.robot], always_failed=it.failing or None)
+                for it in self.players
+            },
             trace=self._trace.hexdigest(),
             wall_time=wall_time,
             teams={} if self._teams is None else self._teams.result(),

@@ -11,7 +11,7 @@ from robobt.config.errors import one_line, short_repr, text_of
 from robobt.config.process import users_code
 from robobt.match.scenario.scenario import Scenario
 from robobt.skills.store import Store, TeamStore
-from robobt.tree import Behaviour, TreeError, TreeRunner, node_path
+from robobt.tree import Behaviour, Status, TreeError, TreeRunner, node_path
 from robobt.tree.engine import LEAVING
 from robobt.tree.namespace import Namespace, within
 from robobt.world.command import RobotCommand
@@ -27,7 +27,8 @@ class Player:
 
     Skills share ``store``; ``names`` come first where they look something up; ``problem`` is why its tree
     failed at the last tick that it did: the node's path and what happened. Where a person drives it,
-    ``driver`` says what to do in place of the tree, which rests.
+    ``driver`` says what to do in place of the tree, which rests. ``failing`` is why its tree failed at every
+    tick so far, the path of the node and its reason; None once it did anything else, or for another reason.
     """
 
     robot: RobotId
@@ -36,6 +37,7 @@ class Player:
     problem: str = ""
     names: Namespace | None = None
     driver: Callable[[Frame, RobotState], RobotCommand] | None = None
+    failing: str | None = ""
 
     def __repr__(self) -> str:
         doing = f", problem={self.problem!r}" if self.problem else ""
@@ -59,6 +61,8 @@ class Player:
                     runner.tick()
         except TreeError as error:
             raise TreeError(f"{self.robot}: {error}") from error.__cause__
+        if self.failing is not None:
+            self._follow_failure()
         if runner.error is not None:
             self.problem = runner.error
             return None
@@ -72,6 +76,11 @@ class Player:
         if runner.on_error == "raise":
             raise TreeError(f"{self.robot}: {self.problem}")
         return None
+
+    def _follow_failure(self) -> None:
+        tip = self.runner.tip() if self.runner.root.status is Status.FAILURE else None
+        said = None if tip is None else f"{node_path(tip)}: {tip.feedback_message or 'fails'}"
+        self.failing = said if self.failing in ("", said) else None
 
 
 def make_players(scenario: Scenario, start: Frame) -> list[Player]:

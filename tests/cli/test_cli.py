@@ -205,6 +205,12 @@ class TestMatch:
         figures = json.loads(robobt("match", scenario, "--json", code=3).stdout)
         assert figures["robots"]["blue 0"]["errors"] == 5
 
+    def test_a_robot_that_fails_all_the_time_for_one_reason_is_told(self):
+        given = ("match", "striker_vs_goalie", "-n", "2", "--set", "ends.time_limit=0.1", "--workers", "1")
+        said = robobt(*given, "--blue", "attack_learned").stderr
+        assert "blue 0 did nothing: its tree failed in every tick; Score: it has no model" in said
+        assert "did nothing" not in robobt(*given).stderr
+
     @pytest.mark.parametrize(
         ("trials", "said"),
         [("1", "One trial says little"), ("9", "9 trials say little"), ("10", None)],

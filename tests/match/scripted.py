@@ -42,6 +42,8 @@ class Scripted(Skill):
     def on_running(self) -> Status:
         if self.breaks == "raise":
             raise RuntimeError("broken on purpose")
+        if self.breaks == "fail" or (self.breaks == "fail once" and self.frame.time == 0.0):
+            return self.fail("cannot")
         if self.breaks in _SPOILT:
             self.store.command = _SPOILT[self.breaks]
             return self.run()

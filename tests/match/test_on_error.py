@@ -29,6 +29,14 @@ def test_by_default_the_match_goes_on_without_the_robot() -> None:
     assert result.robots["blue 0"].errors == result.ticks - 1 > 0
 
 
+def test_a_tree_that_fails_at_every_tick_for_one_reason_is_told() -> None:
+    run = run_trials(breaking("fail"), PlainWorld, 2)
+    assert run.results[0].robots["blue 0"].always_failed == "Scripted: cannot"
+    assert run.summary().robots["blue 0"].always_failed == "Scripted: cannot"
+    (other,) = run_trials(breaking("fail once"), PlainWorld, 1).results
+    assert other.robots["blue 0"].always_failed is None
+
+
 @pytest.mark.parametrize("breaks", ["raise", "nan"])
 def test_raise_ends_the_match_with_the_robot_and_the_nodes_path(breaks: str) -> None:
     match = MatchLoop(breaking(breaks, on_error="raise"), 0, PlainWorld)

@@ -32,6 +32,7 @@ class RobotResult:
         kicks: how often it kicked.
         errors: ticks at which its tree failed and the robot was stopped.
         first_error: the first of them, the node's path and what happened; None without one.
+        always_failed: the node and the one reason for which its tree failed at every tick, else None.
     """
 
     __pydantic_config__ = _AS_WRITTEN
@@ -41,6 +42,7 @@ class RobotResult:
     kicks: int = 0
     errors: int = 0
     first_error: str | None = None
+    always_failed: str | None = None
 
     @property
     def total(self) -> float | None:
@@ -180,7 +182,7 @@ class Spread:
 
 @dataclass(slots=True, frozen=True)
 class RobotSummary:
-    """One robot's figures over all trials; times in seconds, kicks a trial."""
+    """One robot's figures over all trials; times in seconds, kicks a trial; else as of one trial."""
 
     go_to_ball: Spread
     shoot: Spread
@@ -188,6 +190,7 @@ class RobotSummary:
     kicks: Spread
     errors: int
     first_error: str | None
+    always_failed: str | None
 
 
 @dataclass(slots=True, frozen=True)
@@ -204,7 +207,7 @@ class Summary:
         time: how long the trials lasted [s].
         in_play: mean share of the time in which the ball was in play.
         robots: figures by robot.
-        real_time_factor: simulated time over the time spent playing, on one core, less that spent compiling.
+        real_time_factor: simulated time over wall time in each process, without compiling; load lowers it.
         trace: hash over the trials' traces in order; equal for equal runs.
         teams: by team the figures of :class:`~robobt.match.results.teams.TeamResult` by their names.
     """
@@ -293,6 +296,7 @@ def _goals(scores: Sequence[int], traces: Sequence[str]) -> GoalCount:
 
 def _robot(results: Sequence[RobotResult]) -> RobotSummary:
     errors = [result.first_error for result in results if result.first_error is not None]
+    reasons = {result.always_failed for result in results}
     return RobotSummary(
         go_to_ball=Spread.of(result.go_to_ball for result in results),
         shoot=Spread.of(result.shoot for result in results),
@@ -300,4 +304,5 @@ def _robot(results: Sequence[RobotResult]) -> RobotSummary:
         kicks=Spread.of(result.kicks for result in results),
         errors=sum(result.errors for result in results),
         first_error=errors[0] if errors else None,
+        always_failed=reasons.pop() if len(reasons) == 1 else None,
     )

@@ -40,7 +40,7 @@ class LearnedSkill(Skill):
     def on_running(self) -> Status:
         """Decide, or do as decided, for one tick."""
         if self._control is None:
-            return self.fail("it has been given no model")
+            return self.fail("it has no model: give it one with model=NAME (robobt models lists them)")
         try:
             self.store.command = self._control.decide(self.frame, self.me, self.draw, self.store.team)
         except PolicyError as error:
