@@ -262,6 +262,24 @@ def table(*columns: str) -> Table:
     return Table(*[Column(name, overflow="fold") for name in columns], box=None, padding=(0, 2, 0, 0))
 
 
+_WORDS = re.compile(r"[^\s:,/|]*[\s:,/|]*")
+
+
+def name_lines(name: str, beside: int) -> str:
+    """Return a name for a table, broken into lines between its words where it is too long.
+
+    Args:
+        name: an entrant's, a variant's: words joined by spaces, colons, commas and the like.
+        beside: how many columns of the screen the rest of the table needs.
+    """
+    width, lines = max(16, console.width - beside), [""]
+    for word in _WORDS.findall(name):
+        if lines[-1] and len(lines[-1]) + len(word.rstrip()) > width:
+            lines.append("")
+        lines[-1] += word
+    return escape("\n".join(map(str.rstrip, lines)))
+
+
 class Progress:
     """A progress bar on stderr for ``total`` steps; nothing where stderr is no terminal."""
 

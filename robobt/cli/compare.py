@@ -22,7 +22,9 @@ from robobt.cli.common import (
     console,
     cores,
     import_files,
+    name_lines,
     print_json,
+    say,
     table,
     warn,
     world_of,
@@ -93,10 +95,11 @@ def compare(
     scores: count, rate, low, high), outcomes, to_ball and to_kick (seconds until
     a robot of blue has the ball, and has kicked it: n, mean, variance), errors
     (ticks in which a robot's tree failed), first_error;
-    against_first, null for the first: scored, goals (blue's less yellow's),
-    to_ball and to_kick, each a difference with n, mean, low and high; only_this
-    and only_first (trials in which blue scores in one of both only), p (McNemar,
-    exact) and holm (p corrected for the number of variants).
+    against_first, null for the first: scored, goals (blue's minus yellow's),
+    to_ball and to_kick, each a difference, this variant minus the first, with n,
+    mean, low and high; only_this and only_first (trials in which blue scores with
+    this variant alone, and with the first alone), p (McNemar, exact) and holm (p
+    corrected for the number of variants).
     """
     from robobt.match.results.compare import compare_results
 
@@ -168,7 +171,7 @@ def _print(found: dict[str, Compared]) -> None:
         if one.errors:
             warn(f"{label}: trees failed in {one.errors} ticks; the first: {one.first_error}")
         rates.add_row(
-            escape(label),
+            name_lines(label, 58),
             f"{one.scored.count} of {one.trials}",
             one.scored.interval(),
             "-" if one.to_ball.mean is None else f"{one.to_ball.mean:.3f} s",
@@ -176,18 +179,19 @@ def _print(found: dict[str, Compared]) -> None:
         )
     console.print(rates)
     (first, _), *others = found.items()
-    console.print(f"\nless [bold]{escape(first)}[/bold]:")
-    gaps = table("variant", "", "difference", "95 % interval", "p", "Holm's p")
     for label, one in others:
         against = one.against_first
         assert against is not None
+        say(f"\n{label}, compared with {first}:")
+        gaps = table("", "difference", "95 % interval", "p", "Holm's p")
         tested = (f"{against.p:.2g}", f"{against.holm:.2g}")
-        gaps.add_row(escape(label), "blue scores", *_texts(against.scored, 100.0, " points"), *tested)
-        gaps.add_row("", "", f"{against.only_this} only here", f"{against.only_first} only there")
-        gaps.add_row("", "goals", *_texts(against.goals, 1.0, ""))
-        gaps.add_row("", "to the ball", *_texts(against.to_ball, 1.0, " s"))
-        gaps.add_row("", "to the kick", *_texts(against.to_kick, 1.0, " s"))
-    console.print(gaps)
+        gaps.add_row("blue scores", *_texts(against.scored, 100.0, " points"), *tested)
+        gaps.add_row("goals, blue minus yellow", *_texts(against.goals, 1.0, ""))
+        gaps.add_row("to the ball", *_texts(against.to_ball, 1.0, " s"))
+        gaps.add_row("to the kick", *_texts(against.to_kick, 1.0, " s"))
+        console.print(gaps)
+        only = f"in {against.only_this} trials, the other way round in {against.only_first}"
+        say(f"Blue scores with {label} but not with {first} {only}.")
 
 
 def _texts(one: Difference, scale: float, unit: str) -> tuple[str, str]:

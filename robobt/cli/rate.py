@@ -7,9 +7,8 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
-from rich.markup import escape
 
-from robobt.cli.common import MAX_SEED, Json, console, print_json, table
+from robobt.cli.common import MAX_SEED, Json, console, name_lines, print_json, table
 from robobt.cli.scenario_options import PLAY, parse_play
 
 
@@ -91,5 +90,5 @@ def rate(
     for name in best:
         rating = ratings[name]
         interval = f"{round(rating.low):+d} to {round(rating.high):+d}"
-        shown.add_row(escape(name), f"{round(rating.elo):+d}", interval, *map(str, counts[name]))
+        shown.add_row(name_lines(name, 42), f"{round(rating.elo):+d}", interval, *map(str, counts[name]))
     console.print(shown)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
-from robobt.cli.common import table
+from robobt.cli.common import console, name_lines, table
 
 if TYPE_CHECKING:
     from rich.table import Table
@@ -29,7 +29,8 @@ _FIGURES = {
 
 def team_figures(teams: Mapping[str, Mapping[str, float]], title: str = "") -> Table:
     """Return a row a figure and a column a team."""
-    listed = table(title, *teams)
+    share = (console.width - 22) // max(1, len(teams))
+    listed = table(title, *[name_lines(name, console.width - share) for name in teams])
     for label, names in _FIGURES.items():
         listed.add_row(label, *[_text(label, [team[name] for name in names]) for team in teams.values()])
     return listed

@@ -49,8 +49,8 @@ def test_every_combination_is_played_from_the_same_starts(tmp_path: Path) -> Non
 def test_the_figures_are_printed_as_tables() -> None:
     shown = run("compare", "striker_vs_goalie", "--blue", "attack_main", "--blue", ":speed=0.5", *QUICK)
     assert "striker_vs_goalie: 2 trials a variant, seed 1" in shown
-    assert "less attack_main" in shown
-    assert "0 only here 0 only there" in " ".join(shown.split())
+    assert ":speed=0.5, compared with attack_main:" in shown
+    assert "scores with :speed=0.5 but not with attack_main in 0 trials, the other way round in 0." in shown
 
 
 def test_long_variants_are_told_apart_on_a_narrow_screen(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -61,12 +61,13 @@ def test_long_variants_are_told_apart_on_a_narrow_screen(monkeypatch: pytest.Mon
         "--blue",
         "attack_main:dribble_speed=1.25,speed=0.75",
     )
-    first, second = run("compare", "striker_vs_goalie", "--blue", "", *speeds, *QUICK).split("less as it is:")
-    for part in (first, second):
-        unwrapped = "".join(line.split()[0] for line in part.splitlines() if line[:1].strip())
-        assert "…" not in part
-        assert "speed=1.25,speed=0.5attack" in unwrapped
-        assert "speed=1.25,speed=0.75" in unwrapped
+    shown = run("compare", "striker_vs_goalie", "--blue", "", *speeds, *QUICK)
+    table, *rest = shown.split("compared with as it is:")
+    assert len(rest) == 2
+    assert "…" not in shown
+    names = [line.split()[0] for line in table.splitlines() if line[:1].strip()]
+    name = ["attack_main:", "dribble_speed=1.25,"]
+    assert names[names.index(name[0]) :][:6] == [*name, "speed=0.5", *name, "speed=0.75"]
 
 
 @pytest.mark.integration

@@ -4,9 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rich.markup import escape
-
-from robobt.cli.common import console, table, warn
+from robobt.cli.common import console, name_lines, table, warn
 from robobt.cli.team_figures import team_figures
 
 if TYPE_CHECKING:
@@ -24,7 +22,9 @@ def print_standings(found: Standings) -> None:
         goals = f"{one.goals_for} : {one.goals_against}"
         counts = [str(count) for count in (one.matches, one.won, one.drawn, one.lost)]
         interval = f"{round(rating.low):+d} to {round(rating.high):+d}"
-        ratings.add_row(str(number), escape(name), f"{round(rating.elo):+d}", interval, *counts, goals)
+        ratings.add_row(
+            str(number), name_lines(name, 60), f"{round(rating.elo):+d}", interval, *counts, goals
+        )
     console.print(ratings)
     if len(names) > 2:
         console.print("\nwon-drawn-lost of the row against the column:")
@@ -43,7 +43,7 @@ def print_encounters(found: Sequence[Encounter]) -> None:
     met = table("encounter", *columns)
     for pair in found:
         met.add_row(
-            escape(f"{pair.first} v {pair.second}"),
+            name_lines(f"{pair.first} v {pair.second}", 70),
             f"{pair.won}-{pair.drawn}-{pair.lost}",
             f"{pair.goals_for} : {pair.goals_against}",
             lead_text(pair.lead, pair.low, pair.high),
@@ -69,5 +69,5 @@ def _print_cross_table(found: Standings, names: list[str]) -> None:
     crossed = table("", *[str(number) for number in range(1, len(names) + 1)])
     for number, name in enumerate(names, start=1):
         row = ["" if name == other else cells.get((name, other), "-") for other in names]
-        crossed.add_row(escape(f"{number} {name}"), *row)
+        crossed.add_row(name_lines(f"{number} {name}", 9 * len(names)), *row)
     console.print(crossed)

@@ -17,7 +17,7 @@ class Difference:
 
     Attributes:
         n: trials that both have the figure in, those that repeat another pair only once.
-        mean: mean difference, this less the first; None without such a trial.
+        mean: mean difference, this variant minus the first; None without such a trial.
         low, high: its interval; None where the trials, or the differences, are all the same.
     """
 
@@ -33,9 +33,9 @@ class AgainstFirst:
 
     Attributes:
         scored: difference of the shares of trials in which blue scores.
-        only_this, only_first: trials in which blue scores only here, and only with the first.
+        only_this, only_first: trials in which blue scores with this variant alone, and with the first alone.
         p: of McNemar's exact test, two-sided; ``holm`` is corrected for the number of variants.
-        goals: goals of blue less those of yellow, a trial.
+        goals: goals of blue minus those of yellow, a trial.
         to_ball, to_kick: time until the first robot of blue has the ball, and has kicked it [s].
     """
 
