@@ -222,11 +222,15 @@ def skills() -> str:
     from robobt.tree.parameters import parameters_of
     from robobt.tree.signatures import meanings_of
 
-    parts = ["# Skills and conditions\n\nWhat leaves of a tree there are: `from robobt.skills import ...`.\n"]
+    parts = [
+        "# Skills and conditions\n\nWhat leaves of a tree there are: `from robobt.skills import ...`. A "
+        "**condition** only looks: it succeeds or fails at once and commands nothing.\n"
+    ]
     for name in SKILLS:
         skill = SKILLS[name]
         meanings = meanings_of(skill)
-        parts.append(f"## {name}\n\n{_text(re.split(r'(?m)^Args:', inspect.getdoc(skill) or '')[0])}")
+        kind = "**Condition.** " if skill.condition else ""
+        parts.append(f"## {name}\n\n{kind}{_text(re.split(r'(?m)^Args:', inspect.getdoc(skill) or '')[0])}")
         own = [one for one in parameters_of(skill) if one.name != "name"]
         if own:
             parts.append("| parameter | type | default | meaning |\n| --- | --- | --- | --- |")

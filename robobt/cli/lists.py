@@ -51,9 +51,9 @@ def skills(
     """List the skills and conditions: parameters, what they read and write in the robot's store.
 
     Keys of --json: skills, a list with name, description, parameters (name,
-    type, required, default), reads and writes, and package (the distribution it
-    came with, null for robobt's own and imported files'); problems: what is
-    wrong with other packages' skills.
+    type, required, default), reads and writes, condition (whether it is one),
+    and package (the distribution it came with, null for robobt's own and imported
+    files'); problems: what is wrong with other packages' skills.
     """
     import robobt.plays  # noqa: F401  (baselines have leaves of their own)
     from robobt.skills import SKILLS
@@ -63,7 +63,8 @@ def skills(
 
     def listed(cls: type[Skill]) -> _Listed:
         own = [parameter for parameter in parameters_of(cls) if parameter.name != "name"]
-        return _Listed(_doc(cls), own, {"reads": list(cls.reads), "writes": list(cls.writes)})
+        store = {"reads": list(cls.reads), "writes": list(cls.writes)}
+        return _Listed(_doc(cls), own, store, condition=cls.condition)
 
     _list("skills", SKILLS, name, as_json, listed)
 
@@ -125,12 +126,14 @@ class _Listed:
     Attributes:
         store: verb and entries of the store.
         meanings: what parameters mean, where their type does not carry the description.
+        condition: whether a skill is a condition; None for what is no skill.
     """
 
     doc: str
     parameters: list[Parameter]
     store: dict[str, list[str]] = field(default_factory=dict)
     meanings: dict[str, str] = field(default_factory=dict)
+    condition: bool | None = None
 
 
 def _list(
@@ -164,13 +167,15 @@ def _data(name: str, listed: _Listed, package: str | None) -> dict[str, object]:
         "description": listed.doc,
         "parameters": parameters,
         **listed.store,
+        **({} if listed.condition is None else {"condition": listed.condition}),
         "package": package,
     }
 
 
 def _print(name: str, listed: _Listed, package: str | None, *, whole: bool) -> None:
     origin = "" if package is None else f"  from {escape(package)}"
-    console.print(f"[bold]{escape(name)}[/bold]{origin}")
+    marked = "  [cyan]condition[/cyan]" if listed.condition else ""
+    console.print(f"[bold]{escape(name)}[/bold]{marked}{origin}")
     doc = listed.doc if whole else listed.doc.partition("\n")[0]
     console.print(f"  {escape(doc)}".replace("\n", "\n  "), soft_wrap=True)
     for parameter in listed.parameters:

@@ -32,6 +32,7 @@ from robobt.skills.ball.score import Score as Score
 from robobt.skills.ball.settle_ball import SettleBall as SettleBall
 from robobt.skills.ball.shoot import Shoot as Shoot
 from robobt.skills.base import SKILLS as SKILLS
+from robobt.skills.base import Condition as Condition
 from robobt.skills.base import Skill as Skill
 from robobt.skills.base import skill as skill
 from robobt.skills.conditions.ball_aimed_at_goal import BallAimedAtGoal as BallAimedAtGoal
