@@ -73,7 +73,8 @@ _HOP = (0.05, 0.05, 0.3, 0.3, 0.02, 0.3)
 """The same of a hop, from the one before."""
 
 _LAUNCHES, _UNSEEN = 4, 6
-"""A launch is tried at so many moments between two detections, from so many before it was seen on."""
+"""Number of launch times tried per interval between two detections, and number of detections before the kick
+from which the ball may have been launched."""
 
 _SETTLED = 15
 """Detections in flight from which on it is known between which two it began."""
