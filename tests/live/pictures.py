@@ -27,7 +27,7 @@ def main() -> None:
         for layer in ("paths", "targets"):
             page.wait(f"return document.querySelector('.choices input[name={layer}]') !== null")
             page.js(f"document.querySelector('.choices input[name={layer}]').click()")
-        soon(lambda: session.match.measures.ticks * session.match.scenario.period > SHOWN, 120.0)
+        soon(lambda: session.match.measures.ticks * session.match.scenario.period > SHOWN)
         page.find("#play").click()
         page.wait("return document.querySelector('#head').textContent.includes('paused')")
         save(page, "live")

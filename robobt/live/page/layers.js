@@ -25,10 +25,15 @@ let explained = "";
 export const explainDrawn = () => {
   const drawn = drawnSoFar(), told = KNOWN.filter(name => drawn.has(name) && state.layers.has(name)).map(name => MEANS[name]);
   if (drawn.has("placement")) told.push(PLACEMENT);
-  const text = told.join("\n");
+  const own = [...match.layers].filter(name => !KNOWN.includes(name) && state.layers.has(name)).sort();
+  const text = [...told, ...own].join("\n");
   if (text === explained) return;
   explained = text;
-  $("drawn").replaceChildren(...told.map(([sign, means]) => { const entry = make("span"); entry.append(make("b", "", sign), means); return entry; }));
+  $("drawn").replaceChildren(...told.map(([sign, means]) => { const entry = make("span"); entry.append(make("b", "", sign), means); return entry; }), ...own.map(name => {
+    const entry = make("span", "", name), ink = make("i");
+    ink.style.background = inkOf(name); entry.prepend(ink);
+    return entry;
+  }));
   fit(); drawMatch();
 };
 /* The layers that skills are to draw. */
