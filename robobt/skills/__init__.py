@@ -1,8 +1,8 @@
-"""One leaf behaviour a file, each usable alone: skills that move a robot, and conditions.
+"""Skills that move a robot, and conditions: one leaf behaviour per file, each usable alone.
 
-Importing this package imports every module below it, so a new skill is one new file in the room
-where it belongs: its ``@skill`` enters it in :data:`SKILLS`. The names imported here one by one
-are the shipped skills, for type checkers and editors.
+Importing this package imports every module below it, so a new skill needs only one new file in a subpackage:
+its ``@skill`` decorator adds it to :data:`SKILLS`. The explicit imports below list the shipped skills for
+type checkers and editors.
 """
 
 from robobt.skills.aim.aim_at_goal_point import AimAtGoalPoint as AimAtGoalPoint

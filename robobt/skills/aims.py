@@ -27,10 +27,10 @@ class GoalLine:
     """The opponent's goal line as a shot rater judges it, small enough to be recorded at every tick.
 
     Attributes:
-        reach: the outermost points lie this far to either side of the goal's middle, the others
-            evenly between them [m].
-        chances: of every point from right (y < 0) to left the chance of a goal in percent, a
-            byte each, in base64.
+        reach: distance of the outermost points from the goal's middle, on either side; the others are evenly
+            spaced between them [m].
+        chances: chance of a goal at every point from right (y < 0) to left, in percent, one byte each, in
+            base64.
     """
 
     reach: float
@@ -43,11 +43,11 @@ class Pass:
 
     Attributes:
         receiver: the receiver's number.
-        target: where it goes [m].
-        speed: of the ball as it is kicked [m/s].
+        target: point to which it is kicked [m].
+        speed: speed of the ball when it is kicked [m/s].
         score: how good it is, 0 to 1.
-        wait: how long it must not be kicked yet, for the receiver to be there in time [s].
-        chip: whether it flies over robots first.
+        wait: how long to wait before the kick, so that the receiver is there in time [s].
+        chip: whether the ball is chipped over robots.
     """
 
     receiver: int

@@ -19,11 +19,11 @@ from robobt.world.sketch import Sketch
 from robobt.world.state import ROBOT_RADIUS, BallState, Frame, RobotState
 
 FACING = radians(15.0)
-"""How far off a robot looks at most that has to look there roughly."""
+"""Largest heading error of a robot that only has to face a point roughly."""
 
 
 KICKER_GAP = 0.1
-"""Who took a restart stays this far from the ball until somebody else has touched it [m]."""
+"""Distance that the kicker of a restart keeps from the ball until another robot has touched it [m]."""
 
 
 @dataclass(eq=False, repr=False)
@@ -37,12 +37,12 @@ class Skill(Leaf[Store]):
     name: str = ""
 
     def __post_init__(self) -> None:
-        """Make the node. A skill checks its parameters and sets up its state here, after this."""
+        """Make the node. A subclass calls this first, then checks its parameters and sets up its state."""
         super().__init__(self.name)
 
     @property
     def frame(self) -> Frame:
-        """What is on the field."""
+        """The current frame, from the own team's side."""
         return self.store.frame
 
     @property
@@ -57,12 +57,12 @@ class Skill(Leaf[Store]):
 
     @property
     def draw(self) -> Sketch:
-        """Draws on the field for whoever looks, in layers that it names: ``self.draw.line("plan", a, b)``."""
+        """Draws on the field for viewers, in named layers: ``self.draw.line("plan", a, b)``."""
         return self.store.draw
 
     @property
     def drive_limits(self) -> RobotLimits:
-        """The limits to drive with now."""
+        """The driving limits that apply now."""
         return self.store.me.limits
 
     @property
@@ -84,11 +84,12 @@ class Skill(Leaf[Store]):
     ) -> None:
         """Command the planned way to ``target``, the mouth to the point ``facing``; see :func:`travel`.
 
-        The way leads round robots (``avoid_robots``) and the ball (``avoid_ball``), with more room round
-        team-mates (``spare_mates``), and through the own defence area for a ``goalkeeper`` only.
+        The way leads round robots (``avoid_robots``) and the ball (``avoid_ball``), keeps more distance from
+        team-mates with ``spare_mates``, and leads through the own defence area for a ``goalkeeper`` only.
 
-        With ``thereabouts`` the robot looks only roughly there and does not swing after every move of a ball:
-        ``slack`` off it at most, and more where the robot itself covers more of the view [rad].
+        With ``thereabouts`` the robot faces the point only roughly, so that it does not turn after every
+        movement of a ball: at most ``slack`` [rad] off it, or more if the point is so close that the robot's
+        own width covers a larger angle.
         """
         store = self.store
         frame, me = store.frame, store.me
@@ -114,14 +115,14 @@ class Skill(Leaf[Store]):
 def heading_thereabouts(me: Robot, facing: Point, slack: float) -> float:
     """Return the heading of a robot that looks at most ``slack`` past the point ``facing`` [rad].
 
-    What is close passes by quickly, and the robot itself covers more of the view.
+    The direction to a close point changes quickly, and the robot's own width covers a larger angle there.
     """
     here = (me.x, me.y)
     return roughly(me.heading, direction(here, facing), slack + atan2(ROBOT_RADIUS, distance(here, facing)))
 
 
 class Condition(Skill):
-    """A skill that only looks: it succeeds or fails at once and commands nothing."""
+    """A leaf that only checks something: it succeeds or fails at once and commands nothing."""
 
     condition = True
 
@@ -137,7 +138,7 @@ SkillT = TypeVar("SkillT", bound=Skill)
 
 @dataclass_transform(kw_only_default=True, eq_default=False, field_specifiers=(field,))
 def skill(cls: type[SkillT]) -> type[SkillT]:
-    """Class decorator: enter a skill under its class name, and return it.
+    """Class decorator: register a skill under its class name, and return it.
 
     The fields of the class become parameters of its constructor, by keyword,
     unless it writes a constructor of its own.

@@ -1,20 +1,20 @@
-"""A yes or no that does not flicker: it changes only once the other answer has held for a while."""
+"""A debounced condition: its answer changes only after the new answer has held for a while."""
 
 from __future__ import annotations
 
 
 class Debounce:
-    """A debounced answer, in the world's own time.
+    """A debounced yes-or-no answer, in simulation time.
 
-    While off it counts the time for the answer yes, less the time for no, and
-    turns on at ``rise``; while on it counts the same way up to ``fall`` and turns
-    off once it has lost all of it. So an answer that has stood for long survives
-    a gap as long as ``fall``, and one that has just come survives none.
+    While off, a counter adds the time with the answer yes and subtracts the time with no; the output turns on
+    when the counter reaches ``rise``. While on, it counts in the same way up to ``fall`` and turns off when
+    it reaches 0. An answer that has held for long therefore survives a gap as long as ``fall``, and a new one
+    survives none.
 
-    Source: the counters of RoboBulls' published code, AttackMain, as times.
+    Source: the counters of RoboBulls' published code, AttackMain, converted to times.
 
-    ``rise`` is how long yes must outweigh no to turn it on, ``fall`` the longest gap it survives [s]; it
-    begins ``on``.
+    ``rise`` is how long yes must outweigh no to turn it on, ``fall`` the longest gap it survives [s]; ``on``
+    is the initial output.
     """
 
     __slots__ = ("_balance", "_first", "_last", "fall", "on", "rise")
@@ -29,7 +29,7 @@ class Debounce:
         self._last: float | None = None
 
     def update(self, answer: bool, time: float) -> bool:
-        """Take the answer at ``time`` [s] and return ``on``; a clock that runs backwards starts anew."""
+        """Take the answer at ``time`` [s] and return ``on``; a clock that runs backwards resets it."""
         if self._last is not None and time < self._last:
             self.on, self._balance, self._last = self._first, 0.0, None
         passed = 0.0 if self._last is None else time - self._last

@@ -18,31 +18,30 @@ from robobt.world.geometry import Point, direction, wrap_angle
 
 _SLACK = 0.9
 _STANDING = 0.1
-"""Speed below which a robot has arrived [m/s]."""
+"""Speed below which a robot counts as arrived [m/s]."""
 
 
 @skill
 class GoToPose(DrivingSkill):
-    """Drive to a pose round everything in the way, and stop there.
+    """Drive to a pose round all obstacles, and stop there.
 
-    Succeeds when the robot stands within the tolerances; it goes on holding the
-    pose as long as it is ticked. A target where the robot may not stand (outside
-    the walls, in a defence area, too near the ball during a stop) is replaced by
-    the nearest point where it may. Fails without a target.
+    Succeeds when the robot stands within the tolerances, and holds the pose for as long as it is ticked. A
+    target where the robot may not stand (outside the walls, in a defence area, too near the ball during a
+    stop) is replaced by the nearest allowed point. Fails without a target.
 
-    With a policy it is a trained one that drives while the ball is in play, as fast and with the heading that
-    it likes; the last half metre, and the way round defence areas, is the planner's. When its answer is not a
-    valid action, the skill fails and the robot stops.
+    With ``policy`` a trained policy drives while the ball is in play and chooses speed and heading itself;
+    the planner drives the last half metre and round defence areas. If the policy's answer is not a valid
+    action, the skill fails and the robot stops.
 
     Args:
-        target: where to [m]; None takes ``store.target``.
-        heading: where the mouth is to point [rad]; None keeps the present heading.
-        face_ball: turn to the ball instead of to ``heading``, no nearer than ``heading_tolerance`` asks.
+        target: point to drive to [m]; None takes ``store.target``.
+        heading: final heading [rad]; None keeps the present heading.
+        face_ball: turn to the ball instead of to ``heading``, within ``heading_tolerance``.
         tolerance: distance that counts as there [m].
         heading_tolerance: angle that counts as there [rad].
-        limits: how to drive; None is the robot's own.
+        limits: how to drive; None for the robot's own.
         speed: factor on the top speed.
-        avoid_robots, avoid_ball: what must not be touched on the way.
+        avoid_robots, avoid_ball: what the way must avoid.
         goalkeeper: may enter the own defence area.
         policy: name or file of a model for GoToBall that sees the robots in its way
             (``robobt train go_to_ball_among_robots``); empty for the planner alone.

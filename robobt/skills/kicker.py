@@ -1,4 +1,4 @@
-"""Who took a restart of the own team and may not touch the ball again yet."""
+"""The kicker of the own team's last restart, who may not touch the ball again yet."""
 
 from __future__ import annotations
 
@@ -8,19 +8,19 @@ from robobt.world.state import Frame, RobotId
 
 
 def has_kicked(frame: Frame, team: TeamStore, number: int) -> bool:
-    """Return whether that robot took a restart and may not touch the ball before another has."""
+    """Return whether the robot took a restart and may not touch the ball before another robot has."""
     follow_restart(frame, team)
     return team.kicker == number
 
 
 def follow_restart(frame: Frame, team: TeamStore) -> None:
-    """Remember, once a frame, who took the own restart until somebody else has touched the ball."""
+    """Remember, once per frame, who took the own restart until another robot has touched the ball."""
     if team.followed is frame:
         return
     team.followed = frame
     game = frame.game
     if game.penalty is not None:
-        # Whoever takes it may touch the ball as often as it likes.
+        # The kicker of a penalty may touch the ball more than once.
         team.kicker, team.restart_pending = None, False
         return
     if game.restart is not None:

@@ -1,4 +1,4 @@
-"""A way among moving robots as a trained policy drives it."""
+"""Driving among moving robots with a trained policy."""
 
 from __future__ import annotations
 
@@ -15,18 +15,18 @@ from robobt.world.sketch import Sketch
 from robobt.world.state import BallState, Frame, RobotState
 
 NEAR = 0.5
-"""From here on a robot at the policy's speed can still brake and turn as it is to stand [m]."""
+"""Distance from which a robot at the policy's speed can still brake and turn to its final heading [m]."""
 
 _FAR = 0.7
-"""Once as near it is the pilot's until the place is so far again [m]."""
+"""Hysteresis: the planner keeps control until the target is this far away again [m]."""
 
 
 class LearnedWay:
-    """Drives by a policy of Go-To-Ball-Among-Robots, for which the place to go to is the ball.
+    """Drives by a policy for Go-To-Ball-Among-Robots, which is given the target in place of the ball.
 
-    The policy knows of robots and nothing else: round defence areas, and round the ball where that is asked,
-    it is led by the planner's next waypoint. It was trained to arrive at any speed and with any heading, at
-    play. So the way is the planner's near a waypoint and whenever the ball is not in play.
+    The policy sees only robots. The planner's next waypoint leads it round defence areas and, if asked, round
+    the ball. It was trained to arrive at any speed and heading while the ball is in play, so the planner
+    drives near a waypoint and whenever the ball is not in play.
 
     Args:
         model: name or file of a model for GoToBall that sees the robots in the way.
@@ -56,7 +56,7 @@ class LearnedWay:
         ball_gap: float = BALL_GAP,
         goalkeeper: bool = False,
     ) -> RobotCommand | None:
-        """Return the command of one tick; None where the way is the planner's.
+        """Return the command of one tick; None if the planner is to drive.
 
         Arguments as for :func:`robobt.motion.path_planner.travel`.
 

@@ -1,4 +1,4 @@
-"""What a team has agreed on in one frame: who does what, and where."""
+"""A team's agreement for one frame: each player's task and place."""
 
 from __future__ import annotations
 
@@ -19,24 +19,24 @@ from robobt.world.state import Frame
 
 
 class Task(StrEnum):
-    """What a field player does."""
+    """The task of a field player."""
 
     ATTACK = "attack"
     """Goes for the ball, or has it."""
     RECEIVE = "receive"
-    """Is to get the pass that the attacker is about to play."""
+    """Receives the pass that the attacker is about to play."""
     WALL = "wall"
-    """Covers the goal before the own defence area."""
+    """Covers the goal in front of the own defence area."""
     MARK = "mark"
     """Keeps an opponent from getting a pass."""
     SUPPORT = "support"
-    """Waits where a pass can reach it and is worth something."""
+    """Waits where a pass can reach it and is useful."""
 
 
 Omitted: TypeAlias = Literal[
     "nothing", "wall", "marks", "short_place", "one_touch", "kick_loose", "score", "draw", "avoid_crash"
 ]
-"""What a team can do without, to see what it is worth.
+"""The parts of the tactics that can be switched off, to measure what each is worth.
 
 In this order: robots before the own area, marking, the mate beside the ball of a free kick, shots with one
 touch, kicking a held ball loose, the learned attack, drawing the goalkeeper, braking before opponents.
@@ -45,34 +45,34 @@ touch, kicking a held ball loose, the learned attack, drawing the goalkeeper, br
 
 @dataclass(slots=True)
 class Plan:
-    """The agreement of one team; made anew every frame out of the last one.
+    """The agreement of one team, updated every frame from the last one.
 
     Attributes:
         frame: the frame it was made for.
         players: numbers of the field players that take part.
-        without: what the team does without.
-        tactics: what it weighs, and how.
-        numbers: of :func:`~robobt.skills.tactics_settings.applied`, for the present field and ball.
-        tasks: of every player.
-        places: where each of them is to stand that has no other aim [m].
+        without: parts of the tactics that are switched off.
+        tactics: settings of the team's tactics.
+        numbers: result of :func:`~robobt.skills.tactics_settings.applied` for the present field and ball.
+        tasks: task of every player.
+        places: where each player without another target is to stand [m].
         marks: which opponent each marker marks.
         next_pass: the pass that the attacker is about to play, None without one.
-        next_pass_time: when it was chosen last [s].
-        meant: when each player was last the receiver of that pass, and where [s, m].
-        own_times, their_times: when each of the team's and of the opponents' robots can have the ball [s].
-        own_movers, their_movers: all robots of either team as :func:`robobt.world.records.movers`, opponents
-            with no more speed and acceleration than they are taken to use.
-        meetings: when and where each robot can meet the ball, as :func:`robobt.motion.arrival.meetings`.
-        attacker_since: since when the attacker is the one it is [s].
+        next_pass_time: when that pass was last chosen [s].
+        meant: when and where each player was last the receiver of that pass [s, m]. own_times, their_times:
+        when each of the team's and of the opponents' robots can have the ball [s]. own_movers, their_movers:
+        all robots of either team, as :func:`robobt.world.records.movers` returns them; opponents with at most
+        the speed and acceleration that the settings assume.
+        meetings: when and where each robot can meet the ball, from :func:`robobt.motion.arrival.meetings`.
+        attacker_since: time at which the attacker became the attacker [s].
         ours: whether the ball counts as the own team's.
-        ours_since: since when [s].
-        turned: when that last changed [s].
+        ours_since: time at which ``ours`` became what it is [s].
+        turned: when the team last acted on a change of ``ours`` [s].
         ahead: whether the ball counts as in the opponents' half.
-        support: the places chosen for supporters last, the best first [m].
+        support: the places last chosen for supporters, the best first [m].
         support_time: when they were chosen [s].
         short: where a team-mate stands close to the ball of an own restart [m], None without one.
-        watch: tells whether the ball slides or rolls.
-        rolling: the speed from which on it rolls [m/s].
+        watch: detects whether the ball slides or rolls.
+        rolling: speed below which the ball rolls [m/s].
     """
 
     frame: Frame | None = None
@@ -104,14 +104,15 @@ class Plan:
     rolling: float = 0.0
 
     def change_tactics(self, given: TacticsSettings) -> None:
-        """Weigh by the settings ``given`` from now on; those that are not set stay as they are."""
+        """Use the settings ``given`` from now on; settings that are not given stay unchanged."""
         if given.model_fields_set:
             changed = {name: getattr(given, name) for name in given.model_fields_set}
             self.tactics = self.tactics.model_copy(update=changed)
 
     def apply_tactics(self, geometry: FieldGeometry, model: BallModel) -> None:
-        """Bring ``numbers`` up to the settings, on this field and with this ball."""
+        """Recompute ``numbers`` for the settings, field and ball."""
         tactics, (before, field_before, ball_before) = self.tactics, self._applied
-        # By identity: to compare all settings in every frame takes longer than what follows from them.
+        # Compared by identity: comparing all settings in every frame takes longer than recomputing the
+        # numbers.
         if before is not tactics or field_before is not geometry or ball_before is not model:
             self.numbers, self._applied = applied(tactics, geometry, model), (tactics, geometry, model)

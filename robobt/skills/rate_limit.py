@@ -1,13 +1,13 @@
-"""Doing something no more often than every so often, in the world's own time."""
+"""Limit how often something is done, in simulation time."""
 
 from __future__ import annotations
 
 
 class RateLimit:
-    """A limit on how often something is done that need not be done every tick.
+    """A rate limit for work that need not be done in every tick.
 
     Args:
-        every: least time from one to the next [s]; 0 is every tick.
+        every: least time between two runs [s]; 0 for every tick.
     """
 
     __slots__ = ("_last", "every")
@@ -19,11 +19,11 @@ class RateLimit:
         self._last: float | None = None
 
     def due(self, time: float) -> bool:
-        """Return whether it is due at ``time`` [s]; if so, the next is due ``every`` later.
+        """Return whether a run is due at ``time`` [s]; if so, the next is due ``every`` later.
 
-        A clock that runs backwards is a new match: due at once.
+        A clock that runs backwards means a new match, so a run is due at once.
         """
-        # The small slack keeps a multiple of the control period from slipping a tick.
+        # The small slack keeps a multiple of the control period from coming a tick late.
         if self._last is not None and 0.0 <= time - self._last < self.every - 1e-9:
             return False
         self._last = time

@@ -11,7 +11,7 @@ _STANDING = 0.01
 
 @skill
 class Stop(Skill):
-    """Brake and stand where that ends; running until the robot is at rest, then succeeding.
+    """Brake and stand still; running until the robot is at rest, then succeeding.
 
     Args:
         dribbler: whether the dribbler turns meanwhile.
@@ -20,7 +20,7 @@ class Stop(Skill):
     dribbler: bool = False
 
     def on_running(self) -> Status:
-        """Ask for no velocity."""
+        """Command zero velocity."""
         self.store.command = RobotCommand(dribbler=self.dribbler)
         me = self.me
         still = me.speed < _STANDING and abs(me.omega) < _STANDING

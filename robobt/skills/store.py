@@ -1,4 +1,4 @@
-"""What the leaves of one robot's tree share: plain typed attributes, nothing process-wide."""
+"""The state that the leaves of one robot's tree share: plain typed attributes, nothing process-wide."""
 
 from __future__ import annotations
 
@@ -19,22 +19,22 @@ T = TypeVar("T")
 
 @dataclass(slots=True)
 class TeamStore:
-    """What the robots of one team share.
+    """The state that the robots of one team share.
 
     Attributes:
-        passer, receiver: numbers of the robots of the pass under way, None without one.
+        passer, receiver: numbers of the robots of the current pass, None without one.
         pass_target: where that pass goes [m].
         pass_time: when it was kicked [s].
         attackers: numbers of the robots that may go for the ball.
         attacker: who goes for the ball now.
-        marks: which opponent each robot that marks one does.
+        marks: the opponent that each marking robot marks.
         threats: numbers of the opponents without the ball that could score soon, the most dangerous first.
         meeting: where the attacker is to meet a rolling ball [m], None without one.
-        kicker: who took the last restart and may not touch the ball again yet.
+        kicker: number of the robot that took the last restart and may not touch the ball again yet.
         restart_pending: whether a restart of the own team is still to be taken.
-        followed: the frame that ``kicker`` holds for.
-        plan: what the robots that play ``team_player`` have agreed on.
-        kept: what other plays share, by its type; see :meth:`shared`.
+        followed: the frame for which ``kicker`` was updated.
+        plan: the agreement of the robots that play ``team_player``.
+        kept: objects that other plays share, by type; see :meth:`shared`.
     """
 
     passer: int | None = None
@@ -53,7 +53,7 @@ class TeamStore:
     kept: dict[type, Any] = field(default_factory=dict)
 
     def shared(self, kind: type[T]) -> T:
-        """Return the team's one object of this ``kind``, made without arguments when first asked for."""
+        """Return the team's only object of this ``kind``, built without arguments at the first call."""
         found: T | None = self.kept.get(kind)
         if found is None:
             found = self.kept[kind] = kind()
@@ -74,7 +74,7 @@ class Store:
         team: what the team shares.
         target: where a skill wants the robot or the ball to go [m].
         shot: the shot selected last, None without one.
-        goal_line: how a rater that judges every point of it did so then, None without one.
+        goal_line: the goal line as the rater judged it then; None if the rater does not judge every point.
         pass_: the pass selected last, None without one.
         candidates: the passes compared last, the best first.
         draw: takes what skills draw on the field.
@@ -98,4 +98,4 @@ class Store:
 
 
 GIVEN = ("frame", "me", "command", "team", "draw", "time")
-"""The entries of a :class:`Store` that are there without any leaf's doing."""
+"""The entries of a :class:`Store` that are set without any leaf."""

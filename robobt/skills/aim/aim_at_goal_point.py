@@ -9,12 +9,12 @@ from robobt.tree import Status
 
 @skill
 class AimAtGoalPoint(Skill):
-    """Write a shot at a point of the opponent's goal line to ``shot``, good or bad.
+    """Write a shot at a point of the opponent's goal line to ``shot``, without rating it.
 
-    Always SUCCESS; the shot's score is 0, nobody has rated it.
+    Always SUCCESS; the shot's score is 0.
 
     Args:
-        y: of the point [m].
+        y: y coordinate of the point [m].
         tolerance: half angle around it that still counts as this shot [rad].
     """
 

@@ -1,4 +1,4 @@
-"""Choose a kick that wins ground when there is neither a shot nor a pass."""
+"""Choose a kick that gains ground when there is neither a shot nor a pass."""
 
 from __future__ import annotations
 
@@ -21,12 +21,11 @@ _TOLERANCE = radians(6.0)
 
 @skill
 class AimUpfield(Skill):
-    """Write to ``shot`` a kick that keeps the ball in the field and wins ground. Always SUCCESS.
+    """Write to ``shot`` a kick that keeps the ball in the field and gains ground. Always SUCCESS.
 
-    Of the directions about the way to the opponent's goal it takes the one whose
-    lane is freest of opponents, half a metre being free enough, and stays inside
-    the lines; among like ones the straightest and, with the ball in the mouth, the
-    one that asks for the smallest turn.
+    It tries directions around the one to the opponent's goal and takes the lane that stays inside the field
+    and is farthest from all opponents; a clearance above half a metre counts as half a metre. Among equal
+    lanes it takes the straightest or, with the ball in the mouth, the one that needs the smallest turn.
 
     Args:
         reach: length of the lane [m].
@@ -63,11 +62,11 @@ def _rooms(x: float, y: float, ahead: float, reach: float, opponents_: FloatArra
     """Return how far the nearest opponent is from the lane at each turn, at most ``_ENOUGH`` [m].
 
     Args:
-        x: of the ball [m].
-        y: of the ball [m].
-        ahead: from where the turns count [rad].
+        x: x coordinate of the ball [m].
+        y: y coordinate of the ball [m].
+        ahead: direction from which the turns are measured [rad].
         reach: length of the lanes [m].
-        opponents_: as of :func:`~robobt.world.records.movers`.
+        opponents_: the opponents, as :func:`~robobt.world.records.movers` returns them.
     """
     rooms, opponents = np.full(len(_TURNS), _ENOUGH), mover_records(opponents_)
     for k, turn in enumerate(_TURNS):

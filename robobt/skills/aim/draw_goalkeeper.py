@@ -17,15 +17,14 @@ from robobt.world.state import BALL_RADIUS
 class DrawGoalkeeper(Skill):
     """Turn with the ball from one post to the other and back, standing still.
 
-    A goalkeeper covers the line that the robot with the ball points along. It can be
-    turned faster than a goalkeeper drives, so that on the way to the other post it is
-    left behind: that is when a rater sees an opening. The swing begins towards the
-    post that is nearer to the robot's heading and turns round once the robot has
-    pointed at a post for ``hold``. FAILURE without the ball, and once ``patience`` is
-    at an end; what interrupts it for less than a second does not restore that.
+    A goalkeeper covers the line along which the robot with the ball points. The robot turns faster than the
+    goalkeeper drives, so the goalkeeper is left behind while the robot swings to the other post, and a shot
+    rater then sees an opening. The swing starts towards the post nearer to the robot's heading and reverses
+    once the robot has pointed at a post for ``hold``. FAILURE without the ball, and once ``patience`` has run
+    out; an interruption of less than a second does not reset it.
 
     Args:
-        patience: longest time to spend [s]; None is any.
+        patience: longest time to spend [s]; None for no limit.
         hold: how long to point at a post, for the goalkeeper to come [s].
         max_turn: turning rate with the ball [rad/s].
         inset: how far inside the post it points [m].
@@ -45,7 +44,7 @@ class DrawGoalkeeper(Skill):
         self._limits = dribbling_limits(2.0, self.max_turn)
 
     def on_start(self) -> None:
-        """Begin the wait at a post anew."""
+        """Restart the wait at a post."""
         self._there_since = inf
 
     def on_running(self) -> Status:
@@ -77,7 +76,7 @@ class DrawGoalkeeper(Skill):
 
 
 _PAUSE = 1.0
-"""After so long without it, it begins anew [s]."""
+"""An interruption longer than this resets the skill [s]."""
 
 _POINTS_AT = 0.06
-"""So near to the post's direction it points at it [rad]."""
+"""Angle to the post's direction within which the robot points at the post [rad]."""

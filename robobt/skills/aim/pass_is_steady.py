@@ -12,16 +12,16 @@ from robobt.tree import Status
 
 @skill
 class PassIsSteady(Condition):
-    """SUCCESS while the store's ``pass_`` is there and no flicker; else FAILURE, and it is None.
+    """SUCCESS while the store's ``pass_`` is steady; else FAILURE, and ``pass_`` is set to None.
 
-    In a short gap the last pass is put back into the store. To be ticked every
-    tick after :class:`SelectPass`.
+    During a short gap the last pass is put back into the store. Tick it after :class:`SelectPass` in every
+    tick.
 
     Source: RoboBulls' published code, AttackMain, whose times are 0.9 s.
 
     Args:
         rise: how long there must be a pass before it counts [s].
-        fall: longest gap in a pass that has stood as long [s].
+        fall: longest gap that is bridged, once the pass has been there for at least that time [s].
     """
 
     reads = ("pass_",)
@@ -36,7 +36,7 @@ class PassIsSteady(Condition):
         self._steady = Debounce(self.rise, self.fall)
 
     def on_running(self) -> Status:
-        """Weigh what was selected in this tick."""
+        """Debounce the pass selected in this tick."""
         pass_ = self.store.pass_
         if pass_ is not None:
             self._last = pass_

@@ -26,17 +26,16 @@ _LANE_SHARES = (0.2, 0.4, 0.6, 0.8, 1.0)
 class PassRater(Settings):
     """Rates a straight pass to every team-mate.
 
-    A mate is aimed at where it comes to rest if it brakes now. It does not count
-    while that point is too near, outside the field or in a defence area, or while
-    any robot stands in the lane. The others score
+    The pass goes to the point where the team-mate would come to rest if it braked now. A team-mate is left
+    out if that point is too near, outside the field or in a defence area, or if any robot stands in the lane.
+    Every other pass scores
 
         safety * (shot_weight * shot + (1 - shot_weight) * progress)
 
     * safety: a sigmoid of the least head start the ball has over any opponent at
       any point of the lane;
-    * shot: the score of the receiver's own shot from there, at the time it gets the ball;
-    * progress: the way won towards the goal line, from 0 (half a field lost) over
-      0.5 (none) to 1 (half a field won).
+    * shot: the score of the receiver's own shot from there, when it gets the ball; * progress: the distance
+      gained towards the goal line: 0 for half a field lost, 0.5 for none, 1 for half a field gained.
 
     Sources: RoboBulls' published code (bestPassPoint) for the lane; the ideas of
     Thunderbots' pass cost (product of soft terms, receive speed) and Sumatra's
@@ -46,14 +45,20 @@ class PassRater(Settings):
     shot_rater: Annotated[ShotRater, BY_NAME, AfterValidator(make_rater)] = Field(
         OpenAngle(), description="judges the receiver's shot"
     )
-    shot_weight: float = Field(0.6, ge=0, le=1, description="of the receiver's shot against progress")
-    receive_speed: float = Field(2.0, gt=0, le=6.5, description="of the ball at the receiver [m/s]")
+    shot_weight: float = Field(0.6, ge=0, le=1, description="weight of the receiver's shot against progress")
+    receive_speed: float = Field(2.0, gt=0, le=6.5, description="ball speed at the receiver [m/s]")
     max_speed: float = Field(6.0, gt=0, le=20, description="fastest kick [m/s]")
     min_distance: float = Field(1.0, ge=0, le=50, description="shortest pass [m]")
-    lane_clearance: float = Field(0.2415, ge=0, le=5, description="a robot nearer to the lane blocks it [m]")
-    reaction: float = Field(0.12, ge=0, le=2, description="before an opponent moves to intercept [s]")
+    lane_clearance: float = Field(
+        0.2415, ge=0, le=5, description="a robot closer to the lane than this blocks it [m]"
+    )
+    reaction: float = Field(
+        0.12, ge=0, le=2, description="reaction time before an opponent moves to intercept [s]"
+    )
     margin_scale: float = Field(0.4, gt=0, le=10, description="head start that gives a safety of 0.73 [s]")
-    ball: BallModel | None = Field(None, description="how the ball travels; by default as the frame says")
+    ball: BallModel | None = Field(
+        None, description="how the ball travels; by default the frame's ball model"
+    )
 
     def rate_all(self, frame: Frame, me: RobotState) -> list[Pass]:
         """Return every possible pass of ``me`` from where the ball lies, the best first."""
@@ -80,9 +85,9 @@ class PassRater(Settings):
     def head_starts(self, frame: Frame, targets: Sequence[Point], speeds: Sequence[float]) -> list[float]:
         """Compute the least time by which the ball of each pass, kicked at its speed, beats any opponent [s].
 
-        Looked at in five points of the lane; negative where an opponent could be
-        there first. An opponent goes on as it moves for its reaction time and then
-        accelerates straight to the point, which it passes at any speed.
+        The time is compared at five points of the lane and is negative where an opponent could arrive first.
+        An opponent keeps its velocity for its reaction time, then accelerates straight to the point and may
+        pass it at any speed.
         """
         if not frame.opponents:
             return [inf] * len(targets)
@@ -132,7 +137,7 @@ class PassRater(Settings):
         if not able:
             return []
         gaps = lane_clearances(origin, np.array([targets[index] for index in able]), obstacles(frame, me))
-        # The obstacles begin with the mates in the same order; nobody blocks his own lane.
+        # The obstacles begin with the team-mates in the same order; no receiver blocks its own lane.
         gaps[np.arange(len(able)), able] = inf
         free = (gaps.min(axis=1) > self.lane_clearance).tolist()
         return [(mates[index], targets[index]) for index, clear in zip(able, free, strict=True) if clear]

@@ -14,11 +14,10 @@ _MAX_SPEED = 6.0
 
 @skill
 class SelectClearance(Skill):
-    """Write to ``pass_`` the foremost team-mate that the ball can reach, and no ``shot``.
+    """Write to ``pass_`` the foremost team-mate that the ball can reach, and set ``shot`` to None.
 
-    A team-mate counts when it is at least a third of the own half off our goal
-    line and no other robot stands in the lane. FAILURE without one, and
-    ``pass_`` is None.
+    A team-mate counts if it is at least a third of the own half away from our goal line and no other robot
+    stands in the lane. FAILURE without one, and ``pass_`` is None.
 
     Source: RoboBulls' published code, Goalie, which counts team-mates beyond
     x = -1.5 m on a 9 m field.

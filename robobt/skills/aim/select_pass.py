@@ -23,7 +23,7 @@ class SelectPass(Skill):
         min_score: worst score still accepted, 0 to 1.
         keep: stay with the last receiver while it scores at most this much worse
             than the best.
-        every: time from one look to the next [s]; in between the choice stands.
+        every: time between two ratings [s]; in between the last choice is kept.
     """
 
     reads = ("pass_",)
@@ -43,7 +43,7 @@ class SelectPass(Skill):
         self._look = RateLimit(self.every)
 
     def on_running(self) -> Status:
-        """Choose anew when it is time to."""
+        """Choose again when ``every`` has passed."""
         if self._look.due(self.frame.time):
             self._choice, self._remark = self._choose()
         self.store.pass_ = self._choice

@@ -17,16 +17,15 @@ class SelectShot(Skill):
     """Rate the shots from where the ball lies and write the best one to ``shot``.
 
     SUCCESS when there is one good enough. FAILURE otherwise, with the reason, and
-    ``shot`` is None. Where the rater judges every point of the goal line, its judgement
-    goes to ``goal_line``, to be recorded and shown.
+    ``shot`` is None. If the rater judges every point of the goal line, the result is written to ``goal_line``
+    for recordings and display.
 
     Args:
         rater: a shot rater: its name, ``{name: NAME, SETTING: VALUE}``, or the rater itself.
-        min_score: worst score still accepted, 0 to 1; what a score means is the rater's.
-        max_distance: no shots from farther than this from the goal's centre [m]; None is any.
-        keep: stay with the opening of the last shot while it scores at most this
-            much worse than the best, so that the aim does not jump between two
-            like ones.
+        min_score: worst score still accepted, 0 to 1; its meaning depends on the rater.
+        max_distance: no shots from farther than this from the goal's centre [m]; None for no limit.
+        keep: stay with the opening of the last shot while it scores at most this much worse than the best, so
+            that the aim does not jump between two similar openings.
     """
 
     reads = ("shot",)

@@ -19,7 +19,7 @@ class ShotIsOpen(Skill):
     Args:
         rater: a shot rater: its name, ``{name: NAME, SETTING: VALUE}``, or the rater itself.
         min_score: worst score still accepted, 0 to 1.
-        max_distance: no shots from farther than this from the goal's centre [m]; None is any.
+        max_distance: no shots from farther than this from the goal's centre [m]; None for no limit.
     """
 
     rater: Rater = "segment_clearance"

@@ -12,16 +12,16 @@ from robobt.tree import Status
 
 @skill
 class ShotIsSteady(Condition):
-    """SUCCESS while the store's ``shot`` is there and no flicker; else FAILURE, and it is None.
+    """SUCCESS while the store's ``shot`` is steady; else FAILURE, and ``shot`` is set to None.
 
-    In a short gap the last shot is put back into the store. To be ticked every
-    tick after :class:`SelectShot`.
+    During a short gap the last shot is put back into the store. Tick it after :class:`SelectShot` in every
+    tick.
 
     Source: RoboBulls' published code, AttackMain, whose times are 0.9 s.
 
     Args:
         rise: how long there must be a shot before it counts [s].
-        fall: longest gap in a shot that has stood as long [s].
+        fall: longest gap that is bridged, once the shot has been there for at least that time [s].
     """
 
     reads = ("shot",)
@@ -36,7 +36,7 @@ class ShotIsSteady(Condition):
         self._steady = Debounce(self.rise, self.fall)
 
     def on_running(self) -> Status:
-        """Weigh what was selected in this tick."""
+        """Debounce the shot selected in this tick."""
         shot = self.store.shot
         if shot is not None:
             self._last = shot

@@ -16,11 +16,12 @@ from robobt.world.records import Robot
 from robobt.world.rules import has_ball
 
 _GRACE = 0.15
-"""The ball counts as lost when it has been out of the mouth for this long [s]."""
+"""The ball counts as lost once it has been out of the mouth for this long [s]."""
 _RULE_MARGIN = 0.1
-"""How far before the dribbling limit the skill gives up, to have let go in time [m]."""
+"""Distance before the dribbling limit at which the skill gives up, so that the ball is released in time
+[m]."""
 _OTHER_WAY = 0.6
-"""A way that differs by more is another one [rad]."""
+"""Difference in direction from which a way counts as another one [rad]."""
 
 
 @dataclass(slots=True)
@@ -39,14 +40,15 @@ class DribbleTo(Skill):
     target, when the ball is lost, and when it has been carried as far as allowed.
 
     Args:
-        target: where to [m]; None takes ``store.target``.
+        target: point to carry the ball to [m]; None takes ``store.target``.
         tolerance: distance that counts as there [m].
-        max_speed: [m/s].
+        max_speed: top speed with the ball [m/s].
         max_turn: turning rate with the ball [rad/s].
-        max_acceleration: with the ball, in any direction [m/s^2].
+        max_acceleration: acceleration with the ball, in any direction [m/s^2].
         max_distance: how far the ball may be carried from where it was taken [m];
-            the rules allow 1 m. None is any distance.
-        keep: how long it keeps to its way where another one turns up, for two like ones take turns [s].
+            the rules allow 1 m. None for no limit.
+        keep: how long it keeps its way after the planner proposes another; otherwise two similar ways
+            alternate [s].
 
     Raises:
         ValueError: ``keep`` is negative.
@@ -72,7 +74,7 @@ class DribbleTo(Skill):
         self._limits = dribbling_limits(self.max_speed, self.max_turn, self.max_acceleration)
 
     def on_start(self) -> None:
-        """Take the ball's present place as the start of the carry."""
+        """Take the ball's current position as the start of the carry."""
         self._taken_at = None
         self._last_held = self.frame.time
         self._course.since = -inf
@@ -129,11 +131,11 @@ def carrying_velocity(
 
     Args:
         me: the robot, with the ball.
-        point: where to [m].
+        point: the next point of the way [m].
         speed_there: speed allowed there [m/s].
-        heading: which way it is to face [rad].
+        heading: direction the robot is to face [rad].
         pace: top speed and acceleration with the ball [m/s, m/s^2].
-        stands: for how long a command stands [s].
+        stands: duration for which a command is held [s].
     """
     top, acceleration = pace
     dx, dy = point[0] - me.x, point[1] - me.y
@@ -150,6 +152,6 @@ def carrying_velocity(
         acceleration,
         stands,
     )
-    # Only a ball that is pushed stays: the robot turns first and drives as it faces the way.
+    # The ball stays only while it is pushed, so the robot turns first and drives once it faces the way.
     speed *= max(0.0, cos(wrap_angle(heading - me.heading))) ** 2
     return ux * speed, uy * speed

@@ -1,4 +1,4 @@
-"""Get the ball from one opponent and score, all of it learned."""
+"""Win the ball from one opponent and score, by one learned policy."""
 
 from __future__ import annotations
 
@@ -10,8 +10,9 @@ from robobt.skills.base import skill
 class Duel(PolicySkill):
     """Play one against one by a trained policy: get the ball, keep it, score; runs for as long as ticked.
 
-    It sees the nearest opponent and no mate, and carries the ball as far as it likes. It decides as often as
-    in training, and fails, and the robot stops, when the policy's answer is not a valid action.
+    It sees the nearest opponent and no team-mates, and carries the ball without regard to the dribbling
+    limit. It decides as often as in training. If the policy's answer is not a valid action, the skill fails
+    and the robot stops.
 
     Args:
         policy: name or file of a model for Duel (``robobt train duel`` or ``duel_with_script``); without one

@@ -22,10 +22,10 @@ _BEHIND = ROBOT_RADIUS + BALL_RADIUS + 0.05
 _NEAR = 0.3
 _GRAB_SPEED = 0.4
 _PULL_SPEED = 0.5
-"""With the ball, backwards [m/s]."""
+"""Speed when driving backwards with the ball [m/s]."""
 
 _PULL_ACCELERATION = 0.8
-"""The same where the dribbler holds it [m/s^2]."""
+"""Deceleration when driving backwards with the ball in the dribbler [m/s^2]."""
 
 
 def pull(
@@ -41,15 +41,14 @@ def pull(
 ) -> tuple[RobotCommand, str]:
     """Take the ball from the side of ``place`` and drive backwards to there, for one tick.
 
-    A ball at a wall or behind a line comes free this way, for the robot never has to get
-    behind it. The robot may enter its own defence area, and where it is ``placing`` the
-    ball as the referee asks, both.
+    This frees a ball at a wall or behind a line, because the robot never has to get behind it. The robot may
+    enter its own defence area, and both defence areas while it is ``placing`` the ball for the referee.
 
     Args:
         frame: what is on the field.
         me: the robot.
         held: whether it has the ball.
-        place: where the robot's centre is to go with the ball [m].
+        place: target of the robot's centre with the ball [m].
         free: how to drive without the ball.
         speed: top speed with it [m/s].
         placing: whether it may enter the opponents' defence area.
@@ -81,7 +80,7 @@ def pull(
 
 @skill
 class FetchBall(DrivingSkill):
-    """Take the ball from the side of the own goal and drive backwards with it to before the goal.
+    """Take the ball from the side of the own goal and drive backwards with it, to in front of the goal.
 
     SUCCESS when the ball lies within 0.3 m of the place.
 
@@ -90,7 +89,7 @@ class FetchBall(DrivingSkill):
     Args:
         limits: how to drive without the ball; None for the robot's own.
         speed: factor on the top speed without the ball.
-        before_goal: where to, in front of the goal's centre [m].
+        before_goal: distance of that place from the goal's centre [m].
     """
 
     before_goal: float = 0.15

@@ -34,22 +34,23 @@ HANDOVER_DISTANCE = 0.2
 FACING_BALL = radians(30.0)
 _FACING_STILL = radians(60.0)
 _CLOSE = 0.16
-"""How far from the ball's centre the approach aims [m]: the planner's ball detour is just narrower."""
+"""Distance from the ball's centre at which the approach aims [m]; the planner's detour round the ball is
+slightly narrower."""
 _REACHABLE = 0.03
 _ROUND = radians(30.0)
 _TURN_DISTANCE = 1.0
 _LOOKING = radians(10.0)
-"""How far off a robot may look that is still on its way."""
+"""Heading error allowed while the robot is still on its way."""
 _SURE = 0.8
-"""Share of its braking that is relied on."""
+"""Share of the robot's braking that the plan relies on."""
 _TOUCHING = ROBOT_RADIUS + BALL_RADIUS
 _RESTS = 0.05
-"""A slower ball is met where it is [m/s]."""
+"""A ball slower than this is approached where it is [m/s]."""
 
 
 @dataclass(slots=True, frozen=True)
 class Approach:
-    """The task of an approach.
+    """What one approach has to do.
 
     Attributes:
         meeting: where the ball can be met [m].
@@ -65,28 +66,26 @@ class Approach:
 
 
 Policy = Callable[[Store, Approach], RobotCommand]
-"""What decides an approach, tick by tick."""
+"""A policy for approaching the ball, called in every tick."""
 
 POLICIES: Registry[Callable[..., object]] = Registry("go-to-ball policy")
-"""Every way to get to the ball by its name: a function, or a class of them that each leaf makes one of."""
+"""The policies by name. Each is a function, or a class of which each leaf builds one instance."""
 
 _BY_NAME = policies_by_name(POLICIES)
 
 GoToBallPolicy: TypeAlias = Annotated[str | Mapping[str, object] | Policy, _BY_NAME]
-"""What decides an approach, as parameters take it."""
+"""A policy for approaching the ball, as parameters accept it."""
 
 
 @skill
 class GoToBall(DrivingSkill):
-    """Approach the ball until it is within 0.2 m and ahead; then :class:`PickUpBall` takes over.
+    """Approach the ball until it is within 0.2 m and ahead, so that :class:`PickUpBall` can take over.
 
-    A moving ball is met where it will be. Once handed over, the skill goes on
-    succeeding until the ball is 0.3 m away or more than 60 degrees off the
-    heading, so that approach and pick-up do not take turns.
+    A moving ball is met where it will be. After that the skill keeps succeeding until the ball is 0.3 m away
+    or more than 60 degrees off the heading, so that approach and pick-up do not alternate.
 
-    A trained policy hands over where it was trained to end: by the contact rule
-    in its model card, and from any side, so that it ignores ``approach``. When
-    its answer is not a valid action, the skill fails and the robot stops.
+    A trained policy succeeds by the contact rule in its model card and approaches from any side, so it
+    ignores ``approach``. If its answer is not a valid action, the skill fails and the robot stops.
 
     Args:
         policy: what decides the motion, by name or as ``{name: NAME, SETTING: VALUE}``: "geometric", or
@@ -143,7 +142,7 @@ class GoToBall(DrivingSkill):
         return facing is None or abs(wrap_angle(bearing - facing)) <= off
 
     def _facing(self, meeting: Point) -> float | None:
-        """Return the direction in which to come to the ball; None for any, as to a ball at a wall."""
+        """Return the direction of approach; None for any direction, for example to a ball at a wall."""
         if self.approach == "nearest":
             return None
         store = self.store
@@ -159,9 +158,9 @@ class GoToBall(DrivingSkill):
 
 @POLICIES.register("geometric")
 class Geometric(Settings):
-    """Drive to the place beside the ball by the planned way, facing it."""
+    """Drive to a place beside the ball along the planned way, facing the ball."""
 
-    arrival_speed: float = Field(0.5, ge=0, le=10, description="at the end, kept by the pick-up [m/s]")
+    arrival_speed: float = Field(0.5, ge=0, le=10, description="final speed, which the pick-up keeps [m/s]")
 
     def __call__(self, store: Store, approach: Approach) -> RobotCommand:
         """Compute the command of one tick."""
@@ -186,17 +185,17 @@ class Geometric(Settings):
 
 
 class LearnedApproach:
-    """An approach that a trained policy decides, within given limits.
+    """An approach driven by a trained policy, within given limits.
 
-    It does not come closer to the ball faster than it can still brake to the speed at
-    which the robot's dribbler takes it: policies are trained to arrive, not to stop.
+    Its closing speed is limited so that it can still brake to the speed at which the robot's dribbler takes
+    the ball: policies are trained to arrive, not to stop.
 
     Args:
         model: name or file of a model for GoToBall.
 
     Attributes:
-        reached: distance to the ball [m] and angle off the heading [rad] at which it was
-            trained to have reached it; a distance of 0 where it was trained to touch it.
+        reached: distance to the ball [m] and angle off the heading [rad] at which training counted the ball
+            as reached; a distance of 0 if it was trained to touch the ball.
     """
 
     def __init__(self, model: str) -> None:
@@ -217,7 +216,7 @@ class LearnedApproach:
 
 
 def _closing_speed(store: Store) -> float:
-    """Return the speed from which the robot can brake to what its dribbler takes before contact [m/s]."""
+    """Return the highest speed from which it can brake before contact to what its dribbler takes [m/s]."""
     frame, me = store.frame, store.me
     limits, ball = me.limits, frame.ball
     way = hypot(ball.x - me.x, ball.y - me.y) - HANDOVER_DISTANCE - me.speed * frame.period
@@ -238,7 +237,7 @@ def _reached(contact: object) -> tuple[float, float]:
 
 @POLICIES.register("ddpg")
 class Ddpg(LearnedApproach):
-    """Drive by the shipped model that was trained with DDPG: straight at the ball, from any side."""
+    """Drive straight at the ball, from any side, by the shipped model that was trained with DDPG."""
 
     def __init__(self) -> None:
         super().__init__("go_to_ball_ddpg")
@@ -246,7 +245,7 @@ class Ddpg(LearnedApproach):
 
 @compilable
 def beside(ball: Point, facing: float) -> Point:
-    """Return where a robot stands that faces ``ball`` along ``facing`` [rad], before it takes it [m]."""
+    """Return where a robot that faces ``ball`` along ``facing`` [rad] stands before it takes the ball [m]."""
     return (ball[0] - _CLOSE * cos(facing), ball[1] - _CLOSE * sin(facing))
 
 
@@ -258,14 +257,14 @@ def meeting_point(frame: Frame, me: RobotState, limits: RobotLimits) -> Point:
 
 @compilable
 def meeting_law(me: Robot, ball: Ball, pace: tuple[float, float, float], slide: float, roll: float) -> Point:
-    """Return :func:`meeting_point`.
+    """Return :func:`meeting_point`, compiled.
 
     Args:
         me: the robot.
-        ball: the ball, which rolls.
+        ball: the rolling ball.
         pace: the robot's top speed, acceleration and braking [m/s, m/s^2, m/s^2].
         slide: deceleration of the ball while it slides [m/s^2].
-        roll: the same while it rolls [m/s^2].
+        roll: deceleration of the ball while it rolls [m/s^2].
     """
     top, acceleration, braking = pace
     x, y, speed = ball.x, ball.y, hypot(ball.vx, ball.vy)
@@ -291,7 +290,7 @@ def is_at_ball(me: Robot, ball: Ball, handed_over: bool, within: float, off: flo
         ball: the ball.
         handed_over: whether it had ended in the tick before.
         within: distance at which it ends [m].
-        off: angle between heading and ball up to which it does [rad].
+        off: angle between heading and ball up to which it ends [rad].
     """
     if handed_over:
         within, off = LOST_DISTANCE, max(off, _FACING_STILL)
@@ -301,7 +300,7 @@ def is_at_ball(me: Robot, ball: Ball, handed_over: bool, within: float, off: flo
 
 @compilable
 def approach_heading(me: Robot, ball: Ball, meeting: Point) -> tuple[float, bool]:
-    """Return where to look on the way to the ``meeting`` [rad], and whether that is still far."""
+    """Return the heading on the way to the ``meeting`` point [rad], and whether that point is still far."""
     here = (me.x, me.y)
     heading = direction(here, (ball.x, ball.y))
     if distance(here, meeting) < _TURN_DISTANCE:

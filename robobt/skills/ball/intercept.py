@@ -20,14 +20,15 @@ from robobt.world.sketch import Sketch
 from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS, BallState, Frame, RobotState
 
 _FRONT = ROBOT_RADIUS + BALL_RADIUS - 0.015
-"""Centre distance of robot and ball as they meet [m]; about what a flat front makes it."""
+"""Distance between the centres of robot and ball when they meet [m]; about that of a flat front."""
 _SLOW = 0.2
-"""A ball slower than this is gone to, not waited for [m/s]."""
+"""A ball slower than this is approached instead of awaited [m/s]."""
 _CLOSE = 0.2
 _SOON = 1.0
-"""A ball nearer than this is faced exactly [m]."""
+"""The robot faces a ball closer than this exactly [m]."""
 _NEAR_ENOUGH = 0.15
-"""A robot this near counts as there [m]: it would else back away before the ball for its last centimetres."""
+"""Distance within which the robot counts as there [m]; without it the robot would back away from the ball
+over the last centimetres."""
 _STEP = 0.15
 _HORIZON = 4.0
 
@@ -88,7 +89,7 @@ def meet(
         limits: how to drive.
         rolling: speed at which the ball begins to roll [m/s].
         goalkeeper: may enter the own defence area.
-        slack: how far off it may look while the ball is not yet near [rad].
+        slack: heading error allowed while the ball is still far [rad].
         sketch: takes the planned way.
     """
     ball = frame.ball

@@ -1,4 +1,4 @@
-"""Kick a ball loose that two robots hold against each other."""
+"""Kick a ball loose that two opposing robots both hold."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ from robobt.world.compiled import compilable
 from robobt.world.rules import has_ball
 
 _PAUSE = 0.1
-"""A hold that is interrupted for longer begins anew [s]."""
+"""An interruption longer than this resets the hold's duration [s]."""
 
 SPEED = 2.0
-"""Of the kick: the ball comes out to the side and is to stay in the field [m/s]."""
+"""Speed of the kick: the ball comes out to the side and should stay in the field [m/s]."""
 
 FOLLOW = 0.3
 """How fast the robot goes after the ball [m/s]."""
@@ -33,7 +33,7 @@ class Hold:
 def has_lasted(hold: Hold, now: float, heading: float, patience: float) -> bool:
     """Note that an opponent holds the ball too; return whether it has done so long enough to be kicked loose.
 
-    ``heading`` is the robot's [rad], ``patience`` as of :class:`KickLoose`.
+    ``heading`` is the robot's [rad], ``patience`` as in :class:`KickLoose`.
     """
     if not 0.0 <= now - hold.seen < _PAUSE:
         hold.since = now
@@ -43,14 +43,14 @@ def has_lasted(hold: Hold, now: float, heading: float, patience: float) -> bool:
 
 @skill
 class KickLoose(Skill):
-    """Let go of a ball that an opponent holds too, and kick it.
+    """Release a ball that an opponent also holds, and kick it.
 
-    Two dribblers can hold a ball between them for as long as both turn: grSim joins a ball to each robot
-    that holds it, so that neither gets away with it, however it drives. FAILURE while there is no such hold,
-    and until it has lasted for ``patience``, or twice that where the robot looks towards its own goal.
+    Two dribblers can hold a ball between them for as long as both turn: grSim attaches the ball to each robot
+    that holds it, so neither can drive away with it. FAILURE without such a hold, and until it has lasted for
+    ``patience``, or twice that if the robot faces its own goal.
 
     Args:
-        patience: how long it tries to get away with the ball first [s].
+        patience: how long the robot first tries to drive away with the ball [s].
 
     Raises:
         ValueError: ``patience`` is not positive.

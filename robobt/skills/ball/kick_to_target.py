@@ -22,39 +22,40 @@ from robobt.world.geometry import Point, direction, distance, wrap_angle
 from robobt.world.rules import has_ball
 
 SHOT_SPEED = 6.4
-"""Kick speed of a shot [m/s]: the rules' 6.5 m/s less what sideways motion may add."""
+"""Kick speed of a shot [m/s]: the rules' 6.5 m/s minus what sideways motion may add."""
 
 MAX_CHIP_SPEED = 6.4
 """Fastest chip [m/s]; like :data:`SHOT_SPEED`, it counts in space."""
 
 _SHOT_TOLERANCE = (radians(0.5), radians(4.0))
-"""Least and most angle by which a shot may be off its point [rad]."""
+"""Smallest and largest tolerance of a shot's direction [rad]."""
 _PASS_TOLERANCE = radians(1.5)
 _ROBOBULLS_TOLERANCE = {"shot": radians(1.0), "pass": radians(5.0)}
 
 _BEHIND = 0.16
-"""Where the robot stands behind the ball [m]: just outside the planner's way round it."""
+"""Distance behind the ball at which the robot lines up [m]; just outside the planner's detour round the
+ball."""
 _THROUGH = 0.05
 _ROUND = 1.0
-"""Tangent of the angle to the line of the kick beyond which the way leads round the ball first."""
+"""Tangent of the angle to the line of the kick from which the robot drives round the ball first."""
 _ROUND_RESTART = 0.35
-"""The same at a restart, where the robot must not meet the ball askew."""
+"""That tangent at a restart, where the robot must not touch the ball at an angle."""
 _RUN_UP_DISTANCE = 2.5
 _IN_MOUTH = 0.03
-"""A ball no farther than this from the heading's line meets the mouth [m]."""
+"""A ball within this distance of the heading's line meets the mouth [m]."""
 _NEAR = 0.25
 _GOT_AWAY = 0.7
 _CREEP = 0.5
 _TURN_DISTANCE = 1.2
 _FACING = radians(10.0)
-"""How far off a robot may look that is still on its way behind the ball."""
+"""Heading error allowed while the robot is still driving behind the ball."""
 _AHEAD = radians(75.0)
-"""How far off the heading a ball may lie that is taken at once."""
+"""Angle off the heading within which a ball is taken at once."""
 _REACHABLE = 0.03
 _LEFT_SHARE = 0.6
 """A ball with this share of the kick's speed towards the target has been kicked."""
 _LEAST_KICK = 0.1
-"""A kick is never slower [m/s]."""
+"""Slowest kick [m/s]."""
 _CARRY_SPEED = 2.0
 _CARRY_ACCELERATION = 1.0
 
@@ -69,41 +70,41 @@ class _Order:
 
     @property
     def along(self) -> float:
-        """How fast the ball leaves along the ground [m/s]."""
+        """Speed with which the ball leaves along the ground [m/s]."""
         return self.speed * cos(self.angle)
 
 
 @skill
 class KickToTarget(DrivingSkill):
-    """Kick the ball at a point: turn with it when the robot has it, else come from behind and kick it.
+    """Kick the ball at a point: turn with it if the robot has it, else get behind it and kick it.
 
     Running until the ball has left, then succeeding. Fails without a target and
     when the ball has got away. A pass is noted in the team's store as its kick
     goes out.
 
-    The ball leaves along the heading with whatever sideways velocity it has, so
-    the robot aims that much to the other side, and may kick while it still turns.
+    The ball leaves along the heading and keeps its sideways velocity; the robot corrects its aim for that,
+    and may kick while it still turns.
 
-    A chip flies over robots and first touches down at the target, or as near to it as the rules' speed
-    lets it; from there it hops and rolls on.
+    A chip flies over robots and first touches down at the target, or as close to it as the speed limit of the
+    rules allows; from there it hops and rolls on.
 
     Args:
         target: where to kick [m]; None takes ``store.shot``, else ``store.pass_``.
         style: "default", or "robobulls" for the paper's baseline
             (:class:`~robobt.skills.robobulls.kick.RobobullsKick`).
-        kick_speed: [m/s]; None is the pass's own speed, or a full shot, or for a chip what
-            the distance needs.
+        kick_speed: speed of the kick [m/s]; None takes the pass's speed, a full shot, or for a chip the speed
+            that the distance needs.
         tolerance: angle by which the kick may be off [rad]; None is half the
             shot's own tolerance, 1.5 degrees for a pass.
-        pass_tolerance: the same for passes alone [rad]; None is as ``tolerance`` says.
-        take: take a ball that lies close before the robot at once, where it would else go round it.
+        pass_tolerance: tolerance for passes only [rad]; None takes ``tolerance``.
+        take: take a ball right in front of the robot at once instead of driving round it.
         max_turn: turning rate with the ball [rad/s].
         limits: how to drive without the ball; None for the robot's own, or
             RoboBulls' in that style.
         speed: factor on the top speed.
         goalkeeper: may enter the own defence area.
-        chip: lift the ball over what stands on its way.
-        touch_downs: at which of a chip's touch-downs it is to be at the target.
+        chip: chip the ball over robots in its way.
+        touch_downs: number of the chip's touch-down that is to be at the target.
 
     Raises:
         ValueError: no such style, a chip in RoboBulls', fewer than one touch-down, or a kick speed or
@@ -218,7 +219,7 @@ class KickToTarget(DrivingSkill):
         line = direction((x, y), order.target)
         facing = line - atan2(ball.vy * cos(line) - ball.vx * sin(line), order.along)
         ux, uy = cos(facing), sin(facing)
-        # How far the robot is behind the ball and beside the line of the kick.
+        # The robot's distance behind the ball and beside the line of the kick.
         back = (x - me.x) * ux + (y - me.y) * uy
         aside = abs((x - me.x) * uy - (y - me.y) * ux)
         behind = (x - _BEHIND * ux, y - _BEHIND * uy)
@@ -228,8 +229,8 @@ class KickToTarget(DrivingSkill):
         in_line = aside < round_ * back and (not near or aside < _IN_MOUTH)
         close = self.take and near and abs(wrap_angle(direction(me.position, (x, y)) - me.heading)) < _AHEAD
         if not in_line and frame.game.in_play and (has_ball(me, ball) or (at_wall and near) or close):
-            # It lies askew before the mouth, or cannot be come at from behind: take it, then turn with it.
-            # Not at a restart, where touching it is the kick.
+            # The ball is in front of the mouth but off the line, or cannot be approached from behind: take
+            # it, then turn with it. Not at a restart, where the first touch is the kick.
             self.store.command = grab(me, ball, _CREEP, frame.period)
             return
         heading = facing if back < _TURN_DISTANCE else direction(me.position, (x, y))
@@ -267,11 +268,11 @@ class KickToTarget(DrivingSkill):
         sideways, ahead = c * ball.vy - s * ball.vx, c * ball.vx + s * ball.vy
         leaving = me.heading + atan2(sideways, order.along)
         off = abs(wrap_angle(direction(ball.position, order.target) - leaving))
-        # At a restart a touch is the kick, however it is aimed: another one would be a foul.
+        # At a restart the first touch is the kick, whatever its aim; a second touch would be a foul.
         touched = me.ball_contact and not self.frame.game.in_play
         if off > order.tolerance and not touched:
             return False
-        # What comes at the robot leaves faster than it is kicked, where the kicker lets it.
+        # A ball that rolls towards the robot leaves faster than the kick alone, if the kicker allows it.
         self.store.command.kick_speed = max(
             _LEAST_KICK, order.speed + me.limits.kick_rebound * min(ahead, 0.0)
         )

@@ -1,4 +1,4 @@
-"""From a frame through a trained policy to one robot's command."""
+"""Compute one robot's command from a frame with a trained policy."""
 
 from __future__ import annotations
 
@@ -47,16 +47,15 @@ OBSERVERS: Mapping[str, Callable[[Frame, RobotState], FloatArray]] = {
     SHOOT.name: shoot_of,
     SCORE_ON_GOALKEEPER.name: score_on_goalkeeper_of,
 }
-"""The function that makes each observation from a frame, but those of robots in a team."""
+"""The function that computes each observation from a frame, except the observations of robots in a team."""
 
 P = TypeVar("P")
 
 _shipped: dict[Path, ModelFile] = {}
-"""Models that ship of which a control was made; with their networks loaded only when first asked, most
-processes need no torch."""
+"""Shipped models in use. Their networks are loaded at the first decision, so most processes need no torch."""
 
 OBSERVATION = "observation"
-"""The layer of what trained policies observe and answer."""
+"""The drawing layer for observations and actions of trained policies."""
 
 _LIMIT = 1.0 + 1e-4
 """Largest action that rounding in single precision explains."""
@@ -69,8 +68,8 @@ class PolicyError(RobobtError, RuntimeError):
 class LearnedControl:
     """A trained policy that decides one robot's command, tick by tick. It has no memory.
 
-    The network of a model that ships is loaded when it first decides, or by :func:`load_shipped_policies`;
-    any other at once, so that what is wrong with it is said before anything moves.
+    The network of a shipped model is loaded at its first decision, or by :func:`load_shipped_policies`; any
+    other model is loaded at once, so that its errors are reported before anything moves.
 
     Args:
         model: name of a shipped model, or the path of a model file.
@@ -79,7 +78,7 @@ class LearnedControl:
 
     Attributes:
         card: the model's own description.
-        minds_kicker: whether it is told who took a restart and may not touch the ball again yet.
+        minds_kicker: whether it observes that its robot took a restart and may not touch the ball again yet.
 
     Raises:
         ModelError: the model cannot be used.
@@ -117,14 +116,15 @@ class LearnedControl:
         """Compute the command of one tick.
 
         Args:
-            frame: what its team sees.
+            frame: the frame as its team sees it.
             me: its robot.
-            sketch: takes what it observes and answers.
-            barred: whether it took a restart and may not touch the ball yet, where it minds that.
+            sketch: records its observation and action.
+            barred: whether its robot took a restart and may not touch the ball yet; used with
+                ``minds_kicker``.
 
         Raises:
-            PolicyError: the policy fails, its answer is not finite or lies outside [-1, 1], or it cannot be
-                loaded.
+            PolicyError: the policy fails, its answer is not finite or is outside [-1, 1], or it cannot be
+            loaded.
         """
         try:
             if self._infer is None:
@@ -151,17 +151,17 @@ class LearnedControl:
 
 
 def load_shipped_policies() -> None:
-    """Load the networks that controls made so far will ask, as before a match in real time."""
+    """Load the networks of all controls built so far, before a match in real time."""
     for file in _shipped.values():
-        # What is wrong with one is said where it is asked.
+        # An error in a model is reported where the model is used.
         with suppress(ModelError):
             load_policy(file)
 
 
 class PacedControl:
-    """A trained policy that decides as often as it did in training; what it decided holds between.
+    """A trained policy that decides as often as in training; its last command holds in between.
 
-    With the ball in its mouth the robot drives no faster sideways than its dribbler bears.
+    With the ball in its mouth the robot drives sideways only as fast as its dribbler can hold the ball.
 
     Args:
         model: as for :class:`LearnedControl`.
@@ -186,16 +186,16 @@ class PacedControl:
     def decide(
         self, frame: Frame, me: RobotState, sketch: Sketch | None = None, team: TeamStore | None = None
     ) -> RobotCommand:
-        """Decide, or return what was decided, for one tick; see :meth:`LearnedControl.decide`.
+        """Return the command of one tick: a new decision or the last one; see :meth:`LearnedControl.decide`.
 
-        ``team`` is what remembers who took a restart, from tick to tick.
+        ``team`` is the team's store, which remembers who took a restart.
 
         Raises:
-            PolicyError: the policy's answer is not finite or lies outside [-1, 1].
+            PolicyError: the policy's answer is not finite or is outside [-1, 1].
         """
         barred = team is not None and self._control.minds_kicker and has_kicked(frame, team, me.id)
         period = self._control.card.period or 0.0
-        # Half a tick of room: times are sums of periods.
+        # Half a tick of tolerance, because times are sums of periods with rounding errors.
         if not 0.0 <= frame.time - self._decided < period - frame.period / 2:
             self._decided = -inf
             self._command = self._control.decide(frame, me, sketch, barred)
@@ -206,7 +206,7 @@ class PacedControl:
 
 
 def observer_of(name: str) -> Callable[[Frame, RobotState], FloatArray] | None:
-    """Return the function that makes the observation of that name from a frame; None: there is none."""
+    """Return the function that computes the named observation from a frame, or None if there is none."""
     places = places_of(name)
     if places is None:
         own = OWN_OBSERVATIONS.get(name)
@@ -215,7 +215,7 @@ def observer_of(name: str) -> Callable[[Frame, RobotState], FloatArray] | None:
 
 
 def policies_by_name(registry: Registry[Callable[..., object]], *besides: str) -> ByName:
-    """Return what reads the policies of a skill by name; other names are ``besides`` or those of models."""
+    """Return a reader for the policies of a skill by name; other names are ``besides`` or models' names."""
     also = "".join([f"{name}, and " for name in besides]) + "models by name or file (robobt models)"
     return ByName(registry, others=lambda name: name in besides or _may_be_model(name), also=f"also {also}")
 
@@ -226,13 +226,13 @@ def _may_be_model(name: str) -> bool:
     except UnknownModelError:
         return False
     except ModelError:
-        # It is said where it is loaded.
+        # The error is reported where the model is loaded.
         pass
     return True
 
 
 def find_policy(given: object, by_name: ByName, learned: Callable[[str], P]) -> P:
-    """Return what decides for a skill, by its ``policy`` parameter.
+    """Return the object that decides for a skill, from its ``policy`` parameter.
 
     Args:
         given: the name of a policy, a mapping with that and settings, a model by name or file, or a policy.

@@ -12,15 +12,13 @@ from robobt.world.command import RobotCommand
 class LearnedSkill(Skill):
     """Drive the robot by a trained policy; runs for as long as it is ticked.
 
-    It decides as often as in training, by its card's period, and holds its command
-    between. When to begin and when it is done is the tree's affair: put conditions beside
-    it. Fails, and stops the robot, when the policy's answer is not a valid
-    action.
+    It decides as often as in training, by its card's period, and holds its command in between. The tree
+    decides when it starts and ends: put conditions beside it. If the policy's answer is not a valid action,
+    the skill fails and the robot stops.
 
     Args:
         model: name of a shipped model (``robobt models``) or the path of a model
-            file; what it observes and how its actions are scaled is in its card.
-            Without one the leaf fails.
+            file; its card has the observation and the scale of the actions. Without a model the leaf fails.
 
     Raises:
         ModelError: the model cannot be used; the message names the file and the reason.
@@ -38,7 +36,7 @@ class LearnedSkill(Skill):
             self._control.restart()
 
     def on_running(self) -> Status:
-        """Decide, or do as decided, for one tick."""
+        """Decide, or repeat the last decision, for one tick."""
         if self._control is None:
             return self.fail("it has no model: give it one with model=NAME (robobt models lists them)")
         try:

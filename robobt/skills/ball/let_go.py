@@ -11,16 +11,16 @@ from robobt.world.compiled import compilable
 from robobt.world.records import Ball, Robot
 
 FASTER = 1.0
-"""How much faster than along the heading so far the ball leaves [m/s]."""
+"""How much faster the ball leaves than it moved along the heading before [m/s]."""
 
 
 @skill
 class LetGo(Skill):
-    """Get off the ball at once: push it ahead with the kicker, gently, and brake.
+    """Release the ball at once: push it gently ahead with the kicker, and brake.
 
-    Runs for as long as it is ticked. A robot that only brakes is soon off a ball that it drives at, but takes
-    one that it carries sideways along for up to another 0.5 m. Looking towards its own goal, in its own half,
-    it only brakes.
+    Runs for as long as it is ticked. Braking alone soon separates the robot from a ball in its direction of
+    travel, but a ball carried sideways would stay for up to another 0.5 m. In its own half, facing its own
+    goal, the robot only brakes.
     """
 
     def on_running(self) -> Status:

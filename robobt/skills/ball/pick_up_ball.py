@@ -1,4 +1,4 @@
-"""Take a ball that lies close by into the mouth."""
+"""Take a ball close by into the mouth."""
 
 from __future__ import annotations
 
@@ -20,10 +20,10 @@ LOST_DISTANCE = 0.3
 
 
 def grab(me: RobotState, ball: BallState, speed: float, period: float) -> RobotCommand:
-    """Creep onto the ball for one tick: turn to it and drive at it ``speed`` faster than it rolls.
+    """Creep onto the ball for one tick: turn to it and close in at ``speed``.
 
-    The more the ball lies aside, the less the robot closes in, so that the mouth
-    meets it and not the hull.
+    The farther the ball is to the side, the slower the robot closes in, so that the ball meets the mouth and
+    not the hull.
 
     Args:
         me: the robot.
@@ -78,8 +78,8 @@ class PickUpBall(Skill):
     RoboBulls' published code, which creeps at 0.2 m/s.
 
     Args:
-        speed: how much faster than the ball to drive [m/s], but never faster than the robot's
-            dribbler takes it; None for that.
+        speed: how much faster than the ball to drive [m/s], limited to the speed at which the robot's
+            dribbler can take it; None takes that limit.
         settle: how long the ball has to stay in the mouth [s].
     """
 

@@ -1,4 +1,4 @@
-"""The base of skills that are a trained policy and nothing else."""
+"""The base of skills that consist of one trained policy."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from robobt.world.command import RobotCommand
 class PolicySkill(Skill):
     """A skill that a trained policy plays for as long as it is ticked.
 
-    It decides as often as it did in training, by its card's period, and holds its command between. When its
+    It decides as often as in training, by its card's period, and holds its command in between. When its
     answer is not a valid action, the skill fails and the robot stops. The model has to be one for the skill
     of this name.
 
@@ -27,7 +27,7 @@ class PolicySkill(Skill):
     """
 
     doing: ClassVar[str] = "playing"
-    """What the robot is said to do while it does not kick."""
+    """Feedback while the robot does not kick."""
 
     policy: str = ""
 
@@ -41,7 +41,7 @@ class PolicySkill(Skill):
             self._control.restart()
 
     def on_running(self) -> Status:
-        """Decide, or do as decided, for one tick."""
+        """Decide, or repeat the last decision, for one tick."""
         if self._control is None:
             return self.fail("it has no model: give it one with policy=NAME (robobt models lists them)")
         try:

@@ -1,4 +1,4 @@
-"""Get the ball and score, all of it learned."""
+"""Get the ball and score, by one learned policy."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ from robobt.skills.base import skill
 class Score(PolicySkill):
     """Attack by a trained policy, from first touch to goal; runs for as long as it is ticked.
 
-    What it knows of others is what its model was trained to see. One of Score-On-Goalkeeper looks at the
-    goalkeeper alone (:data:`robobt.world.scoring.SCORE_ON_GOALKEEPER`); one of
-    Score-On-Goalkeeper-And-Defenders at the nearest opponents (:func:`robobt.world.team_view.team_view`), as
-    many as it was trained against. Other robots it drives into, so that with more on the field conditions
-    have to stand beside it. It decides as often as in training, and fails, and the robot stops, when the
-    policy's answer is not a valid action.
+    The policy sees only the robots that its model was trained with. A model for Score-On-Goalkeeper sees the
+    goalkeeper (:data:`robobt.world.scoring.SCORE_ON_GOALKEEPER`); a model for
+    Score-On-Goalkeeper-And-Defenders sees the nearest opponents (:func:`robobt.world.team_view.team_view`),
+    as many as it was trained against. It drives into all other robots, so guard it with conditions if there
+    are more. It decides as often as in training. If the policy's answer is not a valid action, the skill
+    fails and the robot stops.
 
     Args:
         policy: name or file of a model for Score (``robobt train score_on_goalkeeper`` or

@@ -13,7 +13,7 @@ from robobt.world.rules import has_ball
 
 @dataclass(slots=True)
 class Settling:
-    """When the robot had the ball last [s], and whether that was slow since it has it."""
+    """When the robot last had the ball [s], and whether the ball has been slow since the robot took it."""
 
     had: float = -10.0
     settled: float = 0.0
@@ -21,9 +21,9 @@ class Settling:
 
 @compilable
 def is_settled(settling: Settling, now: float, speed: float, slow: float, pause: float) -> bool:
-    """Note that the robot has a ball of this ``speed`` [m/s]; return whether it may be turned with.
+    """Note that the robot has a ball of this ``speed`` [m/s]; return whether the robot may turn with it.
 
-    ``slow`` and ``pause`` are as of :class:`SettleBall`.
+    ``slow`` and ``pause`` are as in :class:`SettleBall`.
     """
     settled = (settling.settled > 0.0 and now - settling.had <= pause) or speed < slow
     settling.had, settling.settled = now, 1.0 if settled else 0.0
@@ -32,15 +32,15 @@ def is_settled(settling: Settling, now: float, speed: float, slow: float, pause:
 
 @skill
 class SettleBall(Skill):
-    """Brake with the ball, as hard as the dribbler bears, until it is slow enough to be turned with.
+    """Brake with the ball, as hard as the dribbler can hold it, until it is slow enough to turn with.
 
-    FAILURE without the ball, and from then on until it has been lost for ``pause``: what the robot
-    does with the ball afterwards may be as fast as it likes. To be ticked every tick.
+    FAILURE without the ball, and once it has settled until it has been lost for ``pause``: afterwards the
+    robot may move with the ball at any speed. Tick it in every tick.
 
     Args:
         slow: speed of the ball at which it is settled [m/s].
-        pause: so long after the robot had the ball it takes it anew [s].
-        share: share of what the dribbler bears.
+        pause: time without the ball after which it has to settle again [s].
+        share: share of the deceleration at which the dribbler still holds the ball.
 
     Raises:
         ValueError: ``slow`` or ``pause`` is negative, or ``share`` is not above 0 and at most 1.

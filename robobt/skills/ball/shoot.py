@@ -21,7 +21,7 @@ from robobt.world.geometry import Point, direction, wrap_angle
 from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS, BallState, RobotState
 
 _INSIDE = 0.6
-"""Share of the open angle to each side of the aim in which it kicks."""
+"""Share of the open angle on each side of the aim within which the robot kicks."""
 _LEFT = 1.0
 """A ball that is this much faster than the robot after a kick has left [m/s]."""
 _TOUCHING = ROBOT_RADIUS + BALL_RADIUS
@@ -29,24 +29,24 @@ _LOST_AFTER = 0.15
 """A ball out of the mouth for longer is lost [s]: it may bounce on the dribbler for a tick or two."""
 
 Policy = Callable[[Store], RobotCommand]
-"""What decides a shot, tick by tick, while the robot has the ball."""
+"""A policy for shooting, called in every tick while the robot has the ball."""
 
 POLICIES: Registry[Callable[..., object]] = Registry("shoot policy")
-"""Every way to shoot by its name: a function, or a class of them that each leaf makes one of."""
+"""The policies by name. Each is a function, or a class of which each leaf builds one instance."""
 
 _BY_NAME = policies_by_name(POLICIES)
 
 ShootPolicy: TypeAlias = Annotated[str | Mapping[str, object] | Policy, _BY_NAME]
-"""What decides a shot, as parameters take it."""
+"""A policy for shooting, as parameters accept it."""
 
 
 @skill
 class Shoot(Skill):
     """Turn on the spot with the ball and kick it into the attacked goal: the paper's Shoot-Towards-Goal.
 
-    Succeeds when the ball has left after a kick, fails when the ball does not lie in
-    the mouth: one that merely lies before it cannot be kicked from the spot. When
-    a trained policy's answer is not a valid action, the skill fails and the robot stops.
+    Succeeds when the ball has left after a kick. Fails when the ball is not in the mouth: a ball merely in
+    front of it cannot be kicked without driving. When a trained policy's answer is not a valid action, the
+    skill fails and the robot stops.
 
     Args:
         policy: what decides turning and kick, by name or as ``{name: NAME, SETTING: VALUE}``: "geometric"
@@ -70,7 +70,7 @@ class Shoot(Skill):
 
     @property
     def learned(self) -> bool:
-        """Return whether a trained policy decides, which aims by itself."""
+        """Return whether a trained policy decides; it chooses its own aim."""
         return isinstance(self._decide, LearnedShot)
 
     def on_start(self) -> None:
@@ -98,13 +98,13 @@ class Shoot(Skill):
 
 @POLICIES.register("geometric")
 class Geometric(Settings):
-    """Turn to the aim at the rate the dribbler bears, and kick once the ball would leave towards it.
+    """Turn to the aim as fast as the dribbler holds the ball, and kick once the ball would leave towards it.
 
-    The ball leaves along the heading with whatever sideways velocity it has. The kick's speed is the rules'
-    6.5 m/s less what sideways motion may add.
+    The ball leaves along the heading and keeps its sideways velocity. The kick's speed is the rules' 6.5 m/s
+    minus what sideways motion may add.
     """
 
-    kick_speed: float = Field(6.4, gt=0, le=20, description="of the shot [m/s]")
+    kick_speed: float = Field(6.4, gt=0, le=20, description="speed of the shot [m/s]")
     max_turn: float = Field(4.0, gt=0, le=30, description="turning rate with the ball [rad/s]")
 
     def __call__(self, store: Store) -> RobotCommand:
@@ -122,7 +122,7 @@ class Geometric(Settings):
 
 
 class LearnedShot:
-    """A shot that a trained policy decides, turning and braking no harder than the dribbler bears.
+    """A shot by a trained policy, which turns and brakes only as hard as the dribbler can hold the ball.
 
     Args:
         model: name or file of a model for Shoot.
@@ -135,7 +135,7 @@ class LearnedShot:
         """Compute the command of one tick."""
         decided, me = self._control.decide(store.frame, store.me, store.draw), store.me
         held = me.limits.hold_acceleration
-        # A ball at distance L that is turned with at w needs w^2 L.
+        # Turning at rate w with the ball at distance L needs the acceleration w^2 L.
         fastest = sqrt(held / _TOUCHING)
         decided.omega = min(fastest, max(-fastest, decided.omega))
         speed = me.speed
@@ -155,7 +155,7 @@ class Ddpg(LearnedShot):
 
 
 def _aim(store: Store) -> tuple[Point, float]:
-    """Return where to shoot [m], and by how much the shot may be off [rad]."""
+    """Return the target of the shot [m] and its tolerance [rad]."""
     if store.shot is not None:
         return store.shot.target, 0.5 * store.shot.tolerance
     frame = store.frame

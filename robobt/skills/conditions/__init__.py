@@ -1,1 +1,1 @@
-"""Conditions: leaves that look and decide nothing else."""
+"""Conditions: leaves that only check something and command nothing."""

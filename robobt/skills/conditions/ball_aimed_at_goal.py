@@ -18,8 +18,8 @@ from robobt.world.state import ROBOT_RADIUS
 class BallAimedAtGoal(Condition):
     """SUCCESS while another robot, of either team, holds the ball and points at our goal mouth.
 
-    Writes where to block: the store's ``target`` is the point a robot's radius
-    before the goal line at which a kick now would cross it.
+    Writes the place to block to the store's ``target``: where a kick now would cross the goal line, moved a
+    robot's radius in front of it.
 
     Source: RoboBulls' published code, Goalie.
     """

@@ -1,4 +1,4 @@
-"""Condition: a resting ball on the edge of the own defence area is the goalkeeper's to fetch."""
+"""Condition: the goalkeeper may fetch a resting ball at the edge of the own defence area."""
 
 from __future__ import annotations
 
@@ -16,24 +16,23 @@ from robobt.world.state import ROBOT_RADIUS
 
 @skill
 class BallAtDefenseEdge(Condition):
-    """SUCCESS from when a ball at the own defence area's edge may be fetched until it is or is lost.
+    """SUCCESS from when a ball at the own defence area's edge may be fetched until it is fetched or lost.
 
-    It may be fetched while it rests between a robot's diameter outside the area's
-    edge and half a radius inside it, and no opponent is about as near to it as
-    the own team. It is fetched when it lies a radius inside the area, lost when
-    it is more than a diameter outside.
+    The ball may be fetched while it rests at most a robot's diameter outside and half a radius inside the
+    area's edge, and no opponent is about as close to it as the own team. It is fetched once it is a radius
+    inside the area, and lost once it is more than a diameter outside.
 
     Source: RoboBulls' published code, Goalie.
 
     Args:
-        rest_speed: fastest ball that rests [m/s].
+        rest_speed: a ball slower than this counts as resting [m/s].
     """
 
     rest_speed: float = 0.1
     _fetching: bool = field(default=False, init=False)
 
     def on_running(self) -> Status:
-        """Look where the ball is and who is near."""
+        """Check the ball's position and the robots near it."""
         ball, field = self.ball, self.frame.field
         at_edge = is_at_edge(ball, field, self._fetching)
         self._fetching = at_edge and (self._fetching or (ball.speed <= self.rest_speed and self._ours()))

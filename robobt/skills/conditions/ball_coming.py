@@ -13,21 +13,21 @@ _TOUCHING = ROBOT_RADIUS + BALL_RADIUS
 
 @skill
 class BallComing(Condition):
-    """SUCCESS while the ball rolls towards this robot, which can step into its way in time.
+    """SUCCESS while the ball rolls towards this robot and the robot can reach its line in time.
 
-    A ball that has passed, or passes too far off, has to be chased instead. FAILURE
-    while the robot has the ball.
+    FAILURE for a ball that has passed or passes too far away, which has to be chased instead, and while the
+    robot has the ball.
 
     Args:
-        slowest: ball that still comes [m/s].
-        late: how much too late the robot may be [s]; it then takes the ball a little farther on.
+        slowest: least ball speed that counts as coming [m/s].
+        late: how late the robot may be [s]; it then takes the ball a little farther along its line.
     """
 
     slowest: float = 0.4
     late: float = 0.2
 
     def on_running(self) -> Status:
-        """Compare the ball's way to abreast of the robot with the robot's way to there."""
+        """Compare the ball's time to the point level with the robot with the robot's time to that point."""
         me, ball = self.me, self.ball
         speed = ball.speed
         if speed < self.slowest:

@@ -8,7 +8,7 @@ from robobt.tree import Status
 
 @skill
 class BallInOwnHalf(Condition):
-    """Succeeds while the ball is on the own side of the line ``x``.
+    """Succeeds while the ball is on the own side of the line at ``x``.
 
     Args:
         x: where the own side ends [m]; 0 is the half-way line.

@@ -11,7 +11,7 @@ class BallInPlay(Condition):
     """SUCCESS while the ball is free for both teams; FAILURE in a stop and before a restart is taken."""
 
     def on_running(self) -> Status:
-        """Ask the referee's state."""
+        """Check the referee's state."""
         game = self.frame.game
         if game.in_play:
             return self.succeed()

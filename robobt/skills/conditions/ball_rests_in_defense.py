@@ -1,4 +1,4 @@
-"""Condition: the ball lies in the own defence area and somebody has to clear it."""
+"""Condition: the ball rests in the own defence area and has to be cleared."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from robobt.world.rules import carries, in_area
 
 @skill
 class BallRestsInDefense(Condition):
-    """SUCCESS while the ball lies in the own defence area, at rest or carried by this robot.
+    """SUCCESS while the ball is in the own defence area, at rest or carried by this robot.
 
     Source: RoboBulls' published code, Goalie.
 
     Args:
-        rest_speed: fastest ball that rests [m/s].
+        rest_speed: a ball slower than this counts as resting [m/s].
     """
 
     rest_speed: float = 0.1

@@ -14,21 +14,20 @@ from robobt.world.rules import has_ball, keeps_ball, touches
 from robobt.world.state import RobotId
 
 LETTING_GO = 0.15
-"""How long it takes to come off a ball [s]."""
+"""Time that a robot needs to release the ball [s]."""
 
 
 @skill
 class CarriedFar(Condition):
     """SUCCESS while the robot has the ball and has carried it ``limit`` or farther.
 
-    The way is as the crow flies from where it got the ball, as referees measure
-    it: they allow 1 m. It ends with another robot's touch or when the robot no longer
-    keeps the ball (:func:`robobt.world.rules.keeps_ball`), so what it rolls while the
-    robot brakes away from it counts too. To be ticked every tick; after a pause it
-    counts anew.
+    The distance is the straight line from where it got the ball, as referees measure it; they allow 1 m. The
+    count ends when another robot touches the ball or when the robot no longer keeps it
+    (:func:`robobt.world.rules.keeps_ball`), so the distance that the ball rolls while the robot brakes away
+    from it counts too. Tick it in every tick; a pause resets the count.
 
     Args:
-        limit: [m].
+        limit: carried distance from which it succeeds [m].
     """
 
     limit: float = 0.8

@@ -15,7 +15,7 @@ class FacesTarget(Condition):
 
     Args:
         target: what to face [m]; None takes ``store.target``.
-        tolerance: angle that still counts as facing it [rad].
+        tolerance: largest angle that counts as facing it [rad].
     """
 
     reads = ("target",)

@@ -9,8 +9,8 @@ from robobt.world.rules import has_ball
 
 @skill
 class HasBall(Condition):
-    """Succeeds while the robot has the ball in or right before its mouth."""
+    """Succeeds while the robot has the ball in its mouth or right in front of it."""
 
     def on_running(self) -> Status:
-        """Ask the sensor and the geometry."""
+        """Check the sensor and the geometry."""
         return self.succeed() if has_ball(self.me, self.ball) else self.fail("it does not have the ball")

@@ -12,7 +12,7 @@ class IsClosestToBall(Condition):
     """Succeeds while no other robot of the team is nearer to the ball.
 
     Args:
-        margin: how much nearer another may be and this one still counts [m].
+        margin: how much nearer another robot may be while this one still counts as the closest [m].
         of_all: compare with the opponents too.
     """
 

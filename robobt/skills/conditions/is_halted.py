@@ -11,7 +11,7 @@ class IsHalted(Condition):
     """SUCCESS while the referee has halted the game or a team has its time-out."""
 
     def on_running(self) -> Status:
-        """Ask the referee's state."""
+        """Check the referee's state."""
         if self.frame.game.halted:
             return self.succeed(self.frame.game.command.name)
         return self.fail("the game is not halted")

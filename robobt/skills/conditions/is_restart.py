@@ -12,15 +12,15 @@ class IsRestart(Condition):
     """SUCCESS from the stop before a restart until the ball is in play; at a penalty kick, until it ends.
 
     Args:
-        kind: which restart; None is any.
-        ours: whether it has to be the own team's or the opponents'; None is either.
+        kind: which restart; None for any.
+        ours: true for the own team's restarts, false for the opponents'; None for either.
     """
 
     kind: Restart | None = None
     ours: bool | None = None
 
     def on_running(self) -> Status:
-        """Ask the referee's state."""
+        """Check the referee's state."""
         frame, game = self.frame, self.frame.game
         restart, team = game.restart, game.restart_team
         if restart is None and game.penalty is not None:

@@ -11,14 +11,14 @@ from robobt.tree import Status
 class MayTouchBall(Condition):
     """SUCCESS while the rules let this robot touch the ball.
 
-    That is while the ball is in play, but for a kicker before anybody else has
-    touched the ball, and for the own team once it may take a restart.
+    A robot may touch the ball while it is in play, unless the robot took a restart and nobody else has
+    touched the ball since; before play it may touch it once its team may take a restart.
     """
 
     reads = ("team",)
 
     def on_running(self) -> Status:
-        """Ask the referee's state and remember who kicked."""
+        """Check the referee's state and remember who kicked."""
         frame, team = self.frame, self.store.team
         follow_restart(frame, team)
         game = frame.game

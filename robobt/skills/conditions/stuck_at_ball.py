@@ -9,20 +9,20 @@ from robobt.skills.debounce import Debounce
 from robobt.tree import Status
 
 HELD = 0.1
-"""How long the ball has to be held until the robot is not stuck any more [s]."""
+"""Time for which the robot has to hold the ball to be no longer stuck [s]."""
 
 
 @skill
 class StuckAtBall(Condition):
     """SUCCESS once the robot has been near the ball for ``patience`` without having it, until it has it.
 
-    Near is within ``distance`` between centres, and what says that it has the ball is the sensor in its
-    mouth: a ball at the hull beside the mouth is what it is most often stuck at. Being away from the ball for
-    0.1 s ends it, as having it does. To be ticked every tick; after a pause it counts anew.
+    Near means within ``distance`` between centres. Having the ball is decided by the sensor in the mouth,
+    because a robot is most often stuck at a ball that touches its hull beside the mouth. Being away from the
+    ball or having it for 0.1 s resets the condition. Tick it in every tick; a pause resets the count.
 
     Args:
-        distance: [m].
-        patience: [s].
+        distance: between the centres of robot and ball [m].
+        patience: time near the ball without having it [s].
 
     Raises:
         ValueError: ``distance`` or ``patience`` is negative.

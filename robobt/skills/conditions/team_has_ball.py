@@ -12,7 +12,7 @@ class TeamHasBall(Condition):
     """Succeeds while a robot of the own team has the ball.
 
     Args:
-        others_only: this robot itself does not count.
+        others_only: whether this robot itself is left out.
     """
 
     others_only: bool = False

@@ -13,7 +13,7 @@ class UnderPressure(Condition):
     """SUCCESS while an opponent's centre is within ``distance`` of the ball.
 
     Args:
-        distance: [m].
+        distance: from the opponent's centre to the ball [m].
     """
 
     distance: float = 0.3

@@ -11,13 +11,13 @@ from robobt.tree.leaf import Bound
 
 
 class AvoidCrash(Decorator, Bound[Store]):
-    """Slows its child's command down before the robot would touch an opponent faster than the rules allow.
+    """Slows its child's command down before the robot would hit an opponent faster than the rules allow.
 
-    Has the child's status. See :func:`robobt.motion.give_way.avoid_crash`.
+    Returns the child's status. See :func:`robobt.motion.give_way.avoid_crash`.
     """
 
     def update(self) -> Status:
-        """Look at the command that the child gave."""
+        """Adjust the child's command."""
         store = self.store
         avoid_crash(store.frame, store.me, store.command)
         return self.decorated.status

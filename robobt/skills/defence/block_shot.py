@@ -1,4 +1,4 @@
-"""Get between the ball and the point it would go to."""
+"""Get between the ball and its expected target."""
 
 from __future__ import annotations
 
@@ -16,19 +16,19 @@ from robobt.world.geometry import Point, closest_point_on_segment, direction, di
 from robobt.world.records import Ball, Robot
 
 _SLOW = 0.5
-"""The robot does not dive for a slower ball [m/s]."""
+"""Slowest ball for which the robot dives [m/s]."""
 
 _THERE = 0.04
-"""A robot this near to the line stops the ball with its front [m]."""
+"""Distance from the line within which the robot stops the ball with its front [m]."""
 
 
 @skill
 class BlockShot(DrivingSkill):
     """Drive to the nearest point of the line from the ball to the store's ``target``, facing the ball.
 
-    Never ends by itself; FAILURE without a target. Avoids nothing: there is no
-    time to. A robot that cannot stop on the line before the ball is there does
-    not try to: it dives, that is, it drives through.
+    Never ends by itself; FAILURE without a target. It avoids no obstacles, because there is no time to. A
+    robot that cannot stop on the line before the ball arrives dives instead: it drives through the line
+    without braking.
 
     Source: RoboBulls' published code, Goalie, which always brakes.
 
@@ -36,8 +36,8 @@ class BlockShot(DrivingSkill):
         limits: how to drive; None for the robot's own.
         speed: factor on the top speed.
         dribbler: whether to catch the ball with the dribbler.
-        dive: whether it may drive through.
-        offset: how far beside the line it takes its place, to the left as the ball flies [m].
+        dive: whether it may drive through the line without braking.
+        offset: distance beside the line, to the left in the ball's direction [m].
     """
 
     reads = ("target",)
@@ -87,16 +87,16 @@ def dive_speed(
     slide: float,
     roll: float,
 ) -> float:
-    """Return the least speed at ``place`` with which a robot is there before the ball [m/s].
+    """Return the lowest speed at ``place`` with which a robot arrives before the ball [m/s].
 
     Args:
         me: the robot.
         ball: the ball.
-        place: where the robot is to be [m].
+        place: target of the robot [m].
         rolling: speed below which the ball rolls [m/s].
         pace: top speed, acceleration and braking of the robot [m/s, m/s^2, m/s^2].
         slide: deceleration of the ball while it slides [m/s^2].
-        roll: the same while it rolls [m/s^2].
+        roll: deceleration of the ball while it rolls [m/s^2].
     """
     top, acceleration, braking = pace
     here, speed = (me.x, me.y), hypot(ball.vx, ball.vy)

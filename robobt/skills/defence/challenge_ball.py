@@ -12,14 +12,14 @@ from robobt.world.state import ROBOT_RADIUS
 
 @skill
 class ChallengeBall(Skill):
-    """Stand before the opponent that has the ball, on the line along which it looks.
+    """Stand in front of the opponent that has the ball, on the line of its heading.
 
     FAILURE while no opponent has the ball; otherwise it never ends by itself.
 
     Source: RoboBulls' published code (ChallengeBallBot), three radii beyond the ball.
 
     Args:
-        gap: from the ball to the robot's centre [m].
+        gap: distance from the ball to the robot's centre [m].
     """
 
     gap: float = 3.0 * ROBOT_RADIUS

@@ -15,18 +15,18 @@ from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS
 
 @skill
 class CloseDown(DrivingSkill):
-    """Stand between the ball and our goal, far out: the nearer to the ball, the more of the goal is hidden.
+    """Stand between the ball and our goal, far out: closer to the ball, the robot hides more of the goal.
 
-    On the line along which the opponent with the ball points, as long as that meets the
-    goal, else on the bisector of the angle between the posts. As far out as ``stand_out``,
-    but no nearer to the ball than ``gap``, nor than where the hull already hides the whole
-    goal. For a goalkeeper that nobody helps, as in a penalty kick: it leaves its defence
-    area. Never ends by itself; FAILURE while the ball is behind the goal line.
+    The robot stands on the line along which the opponent with the ball points, if that line meets the goal,
+    else on the bisector of the angle between the posts. It goes as far out as ``stand_out``, but no closer to
+    the ball than ``gap`` or than the point where its hull hides the whole goal. Meant for a goalkeeper
+    without defenders, as in a penalty kick: it leaves its defence area. Never ends by itself; FAILURE while
+    the ball is behind the goal line.
 
     Args:
         limits: how to drive; None for the robot's own.
         speed: factor on the top speed.
-        stand_out: farthest from the goal line [m].
+        stand_out: largest distance from the goal line [m].
         gap: least distance from the ball to the robot's centre [m].
     """
 
@@ -51,7 +51,7 @@ class CloseDown(DrivingSkill):
         return self.run(doing)
 
     def _aim(self) -> float | None:
-        """Return where the opponent with the ball points on our goal's line, None without one [m]."""
+        """Return where the opponent with the ball points on our goal line [m]; None without one."""
         ball = self.ball
         for robot in self.frame.opponents:
             if has_ball(robot, ball) and cos(robot.heading) < 0.0:

@@ -1,4 +1,4 @@
-"""Stand where the ball sees as little of our goal as possible."""
+"""Stand where the robot hides as much of our goal from the ball as possible."""
 
 from __future__ import annotations
 
@@ -17,16 +17,16 @@ from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS
 
 @skill
 class CoverAngle(DrivingSkill):
-    """Stand on the bisector of the angle between the posts as the ball sees them, facing the ball.
+    """Stand on the bisector of the angle between the posts as seen from the ball, facing the ball.
 
-    How far out is as far as ``stand_out``, but no farther than the own defence
-    area lets, nor than where the robot's width already hides the whole goal.
-    Never ends by itself; FAILURE while the ball is behind the goal line.
+    It goes as far out as ``stand_out``, but stays in the own defence area and goes no farther than the point
+    where its width hides the whole goal. Never ends by itself; FAILURE while the ball is behind the goal
+    line.
 
     Args:
         limits: how to drive; None for the robot's own.
         speed: factor on the top speed.
-        stand_out: farthest from the goal line [m].
+        stand_out: largest distance from the goal line [m].
     """
 
     stand_out: float = 0.5
@@ -49,9 +49,9 @@ class CoverAngle(DrivingSkill):
 
 @compilable
 def is_at_home(me: Robot, field: FieldGeometry) -> bool:
-    """Return whether the goalkeeper is where nobody else may stand, so that it need not go round robots.
+    """Return whether the goalkeeper is where no other robot may stand, so that it need not avoid robots.
 
-    A new goalkeeper from outside goes round its own wall.
+    A new goalkeeper that comes from outside avoids its own wall.
     """
     half_length, depth, width = field.length / 2, field.defense_depth, field.defense_width
     return in_area(-me.x, me.y, half_length, depth, width, ROBOT_RADIUS)
@@ -59,7 +59,7 @@ def is_at_home(me: Robot, field: FieldGeometry) -> bool:
 
 @compilable
 def cover_place(ball: Ball, field: FieldGeometry, stand_out: float) -> Point:
-    """Return where to stand against a ball before the goal line, at most ``stand_out`` before it [m]."""
+    """Return where to stand against a ball, at most ``stand_out`` in front of the goal line [m]."""
     half_length, half_goal = field.length / 2, field.goal_width / 2
     depth, width, there = field.defense_depth, field.defense_width, (ball.x, ball.y)
     line = -half_length
@@ -77,11 +77,12 @@ def cover_place(ball: Ball, field: FieldGeometry, stand_out: float) -> Point:
 
 @compilable
 def bisector_foot(ball: Point, half_length: float, half_goal: float) -> float:
-    """Return where the bisector of the angle between our posts, as the ball sees them, meets the line [m].
+    """Return where the bisector of the angle between our posts, seen from the ball, meets the goal line [m].
 
-    The line is ``half_length`` behind the middle of the field, a post ``half_goal`` beside that of the goal.
+    The goal line is ``half_length`` from the middle of the field, a post ``half_goal`` from the goal's
+    middle.
     """
     ahead = ball[0] + half_length
     to_left, to_right = hypot(ahead, half_goal - ball[1]), hypot(ahead, half_goal + ball[1])
-    # The bisector of an angle divides the opposite side as the other two sides.
+    # The bisector of an angle divides the opposite side in the ratio of the other two sides.
     return half_goal * (to_right - to_left) / (to_right + to_left)

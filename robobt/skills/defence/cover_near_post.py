@@ -16,15 +16,15 @@ from robobt.world.state import ROBOT_RADIUS
 class CoverNearPost(DrivingSkill):
     """Drive to the nearest point of the line from the ball to the nearest point of the goal mouth.
 
-    Never ends by itself. FAILURE while the ball lies beside the goal or that
-    point is not well inside the own defence area.
+    Never ends by itself. FAILURE while the ball is beside the goal or that point is not well inside the own
+    defence area.
 
     Source: RoboBulls' published code, Goalie.
 
     Args:
         limits: how to drive; None for the robot's own.
         speed: factor on the top speed.
-        before_goal: balls farther back than this count as beside the goal [m].
+        before_goal: distance in front of the goal line; balls farther back count as beside the goal [m].
     """
 
     before_goal: float = 0.15

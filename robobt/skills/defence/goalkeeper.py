@@ -1,4 +1,4 @@
-"""Keep goal, all of it learned."""
+"""Keep goal, by one learned policy."""
 
 from __future__ import annotations
 
@@ -10,10 +10,9 @@ from robobt.skills.base import skill
 class Goalkeeper(PolicySkill):
     """Keep the own goal by a trained policy; runs for as long as it is ticked.
 
-    It was trained against one attacker with the ball in the own half and sees the nearest opponent alone. It
-    knows nothing of the referee, of mates, or of what to do with a ball that it has: those are for the tree
-    round it. It decides as often as in training, and fails, and the robot stops, when the policy's answer is
-    not a valid action.
+    It was trained against one attacker with the ball in the own half and sees only the nearest opponent. The
+    referee, team-mates and what to do with a held ball are left to the tree around it. It decides as often as
+    in training. If the policy's answer is not a valid action, the skill fails and the robot stops.
 
     Args:
         policy: name or file of a model for Goalkeeper (``robobt train save``); without one the leaf fails.

@@ -1,4 +1,4 @@
-"""Go home: the goalkeeper's place before the middle of our goal."""
+"""Return to the goalkeeper's place in front of the middle of our goal."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from robobt.world.geometry import direction
 
 @skill
 class ReturnToGoal(DrivingSkill):
-    """Drive to before the goal's centre, facing the middle of the field. Never ends by itself.
+    """Drive to the place in front of the goal's centre, facing the middle of the field. Never ends by itself.
 
     Source: RoboBulls' published code, Goalie.
 

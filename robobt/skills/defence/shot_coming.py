@@ -15,15 +15,15 @@ from robobt.world.state import ROBOT_RADIUS
 
 @skill
 class ShotComing(Condition):
-    """SUCCESS while the ball, straight on, crosses our goal line between the posts.
+    """SUCCESS while the ball, on its present straight line, crosses our goal line between the posts.
 
-    A ball that a robot carries does not count as a shot. Writes where to block: the store's
-    ``target`` is the point of the crossing, a robot's radius before the line.
+    A ball that a robot carries does not count as a shot. Writes the place to block to the store's ``target``:
+    the point of the crossing, moved a robot's radius in front of the line.
 
-    Source: RoboBulls' published code, Goalie, where this holds for the goalkeeper's own ball alone.
+    Source: RoboBulls' published code, Goalie, where only a ball carried by the goalkeeper itself is excluded.
 
     Args:
-        min_speed: slowest approach to the goal line that counts [m/s].
+        min_speed: least speed towards the goal line that counts [m/s].
         margin: how far beside the mouth it still counts [m].
     """
 
@@ -33,7 +33,7 @@ class ShotComing(Condition):
     margin: float = 0.0
 
     def on_running(self) -> Status:
-        """Extend the ball's way to the goal line."""
+        """Extend the ball's line to the goal line."""
         field, ball = self.frame.field, self.ball
         y = crossing(ball, field, self.min_speed, self.margin)
         if isnan(y):
@@ -50,9 +50,9 @@ class ShotComing(Condition):
 
 @compilable
 def crossing(ball: Ball, field: FieldGeometry, min_speed: float, margin: float) -> float:
-    """Return the y at which the ball crosses our goal line [m]; nan where it does not come.
+    """Return the y at which the ball crosses our goal line [m]; nan if it does not come.
 
-    Infinity where it goes wide. ``min_speed`` and ``margin`` are as of :class:`ShotComing`.
+    Infinity if it goes wide. ``min_speed`` and ``margin`` are as in :class:`ShotComing`.
     """
     if ball.vx > -min_speed:
         return nan

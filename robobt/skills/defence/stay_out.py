@@ -11,13 +11,13 @@ from robobt.tree.leaf import Bound
 
 
 class StayOut(Decorator, Bound[Store]):
-    """Changes its child's command so that a field player touches no ball inside a defence area.
+    """Changes its child's command so that a field player does not touch the ball inside a defence area.
 
-    Has the child's status. See :func:`robobt.motion.keep_out.keep_out`.
+    Returns the child's status. See :func:`robobt.motion.keep_out.keep_out`.
     """
 
     def update(self) -> Status:
-        """Look at the command that the child gave."""
+        """Adjust the child's command."""
         store = self.store
         keep_out(store.frame, store.me, store.command)
         return self.decorated.status

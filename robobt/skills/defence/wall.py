@@ -12,23 +12,22 @@ from robobt.world.geometry import Point
 from robobt.world.state import ROBOT_RADIUS
 
 GAP = ROBOT_RADIUS + 0.03
-"""From the defence area to the middle of a robot in the wall [m]."""
+"""Distance from the defence area to the centre of a robot in the wall [m]."""
 
 WIDTH = 2.0 * ROBOT_RADIUS + 0.02
-"""From one robot of a wall to the next [m]."""
+"""Distance between neighbours in a wall [m]."""
 
 
 @skill
 class Wall(Skill):
-    """Stand at the edge of the own defence area where the way from the ball to the goal crosses it.
+    """Stand at the edge of the own defence area where the line from the ball to the goal crosses it.
 
-    The robots of a wall stand side by side about that point and face the ball.
-    Never ends by itself.
+    The robots of a wall stand side by side around that point and face the ball. Never ends by itself.
 
     Source: RoboBulls' published code (Wall).
 
     Args:
-        place: which of them this robot is, counted from 0 on the left as they look out.
+        place: this robot's place in the wall, counted from 0 on the left when facing the field.
         size: how many robots the wall has.
     """
 
@@ -52,7 +51,8 @@ class Wall(Skill):
 def _edge_point(line: float, depth: float, half: float, way: float) -> Point:
     """Return the point ``way`` metres along the edge of the own defence area, from left (+y) to right [m].
 
-    The edge begins and ends on the goal line, at x = ``line``, ``half`` beside the middle, ``depth`` deep.
+    The edge begins and ends on the goal line at x = ``line``, ``half`` from the middle, and is ``depth``
+    deep.
     """
     if way < depth:
         return (line + way, half)
@@ -77,7 +77,7 @@ def _edge_towards(line: float, depth: float, half: float, ball_x: float, ball_y:
 
 @compilable
 def wall_place(field: FieldGeometry, ball_x: float, ball_y: float, place: int, size: int) -> Point:
-    """Return where one of a wall of ``size`` stands [m]; places count from the left as they look out."""
+    """Return where a robot stands in a wall of ``size`` [m]; places count from the left, facing out."""
     depth = field.defense_depth + GAP
     half = min(field.defense_width / 2 + GAP, field.width / 2)
     spread, line = 0.5 * (size - 1) * WIDTH, -field.length / 2

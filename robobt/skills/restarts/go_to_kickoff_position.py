@@ -13,12 +13,12 @@ _ROOM = 0.1
 class GoToKickoffPosition(Skill):
     """Line up in the own half outside the centre circle, spread over the field's width.
 
-    The robots that go for the ball in open play share the line in order of their
-    numbers, without the one that takes the kick-off. Never ends by itself.
+    The robots that go for the ball in open play share the line in order of their numbers; the robot that
+    takes the kick-off is left out. Never ends by itself.
 
     Args:
-        spread: share of the field's width that the line takes.
-        spare_mates: drive gently where it comes near to team-mates, and look only roughly at the ball.
+        spread: share of the field's width that the line covers.
+        spare_mates: drive gently near team-mates, and face the ball only roughly.
     """
 
     reads = ("team",)

@@ -7,7 +7,7 @@ from robobt.tree import Status
 from robobt.world.state import ROBOT_RADIUS
 
 _BEHIND = 1.0 + 3.0 * ROBOT_RADIUS
-"""How far behind mark and ball everybody but kicker and goalkeeper waits; the rules ask for 1 m [m]."""
+"""Distance behind mark and ball at which all but kicker and goalkeeper wait; the rules ask for 1 m [m]."""
 
 
 @skill
@@ -35,7 +35,7 @@ class GoToPenaltyPosition(Skill):
         else:
             number = [robot.id for robot in frame.own].index(me.id)
             y = (number + 0.5) / len(frame.own) * field.half_width
-            # Also when the ball comes back in play.
+            # This also holds when the ball rolls back during play.
             x = away * (max(away * mark, away * frame.ball.x) + _BEHIND)
             target = (x, y)
         self.drive_to(target, frame.ball.position, avoid_ball=True, goalkeeper=self.goalkeeper)

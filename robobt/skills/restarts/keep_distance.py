@@ -1,4 +1,4 @@
-"""Clear the ball while the opponents or the referee have it."""
+"""Keep away from the ball while the opponents or the referee have it."""
 
 from __future__ import annotations
 
@@ -23,18 +23,17 @@ from robobt.world.state import ROBOT_RADIUS, Frame, RobotState
 _MARGIN = 0.05
 _TURNS = (0.0, *(side * step * pi / 12.0 for step in range(1, 12) for side in (1.0, -1.0)), pi)
 _REACHES = (1.0, 1.5, 2.5)
-"""Which ways out are tried: turned so far from straight away, and so many times as far."""
+"""The ways out that are tried: turn from the direction straight away, and factor on the distance."""
 
 _DETOUR = 0.2
-"""Gap to the ball that a way out has to win for each metre that it is longer."""
+"""Gap to the ball that a way out has to gain for each metre of additional length."""
 
 
 @skill
 class KeepDistance(Skill):
-    """Drive away from the ball, from where it will be put down and from the way there.
+    """Drive away from the ball, from the spot of its placement and from the line between them.
 
-    SUCCESS once the hull is at least ``distance`` away from them; no faster than the rules
-    allow on the way.
+    SUCCESS once the hull is at least ``distance`` away from them. The speed stays within the rules' limit.
 
     Args:
         distance: from the hull to the ball [m].
@@ -47,7 +46,7 @@ class KeepDistance(Skill):
     _refuge: Point | None = field(default=None, init=False)
 
     def on_start(self) -> None:
-        """Begin without a place to go to."""
+        """Forget the place to go to."""
         self._refuge = None
 
     def on_running(self) -> Status:
@@ -58,15 +57,15 @@ class KeepDistance(Skill):
         spot = ball if game.placement is None or game.in_play else game.placement
         ways = [(spot, spot), (ball, ball)]
         if game.restart is Restart.BALL_PLACEMENT:
-            # Whoever places the ball needs the way to the spot free, too.
+            # The robot that places the ball also needs the way to the spot to be free.
             ways = [(ball, spot)]
         near = [way for way in ways if segment_distance(me.position, *way) < keep]
         if not near:
             return self.succeed("far enough")
-        # Where the ball will lie counts first; where it rolls now it will not stay.
+        # The ball's placement counts first, because a rolling ball does not stay where it is.
         way = near[0]
         if self._refuge is None or segment_distance(self._refuge, *way) < keep:
-            # Aimed farther than needed, so that the robot does not creep up to the limit.
+            # The target is farther than needed, so that the robot does not creep up to the limit.
             self._refuge = way_out(frame, me, way, keep + 2.0 * _MARGIN, goalkeeper=self.goalkeeper)
         place = closest_point_on_segment(me.position, *way)
         self.drive_to(self._refuge, place, goalkeeper=self.goalkeeper, thereabouts=True)
@@ -76,10 +75,11 @@ class KeepDistance(Skill):
 def way_out(
     frame: Frame, me: RobotState, way: tuple[Point, Point], reach: float, *, goalkeeper: bool = False
 ) -> Point:
-    """Return a point ``reach`` away from the segment ``way``, straight away if robots may stand there.
+    """Return a point ``reach`` [m] from the segment ``way``, straight away from it if robots may stand there.
 
-    Else, as in a corner, the one on the way to which the robot keeps farthest from it; for lack of any,
-    the middle of the field. ``goalkeeper`` says whether the robot may stay in its own defence area [m].
+    Otherwise, as in a corner, take the point on whose way the robot keeps farthest from the segment, or the
+    middle of the field if there is none. ``goalkeeper`` says whether the robot may stay in its own defence
+    area.
     """
     place = closest_point_on_segment(me.position, *way)
     away = direction(place, me.position)

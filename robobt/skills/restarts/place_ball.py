@@ -19,41 +19,41 @@ from robobt.world.rules import STOP_DISTANCE, has_ball
 from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS
 
 _PULL_SPEED = 1.0
-"""With the ball, backwards: 8 m in 10 s, of the 30 s that the rules give [m/s]."""
+"""Speed when driving backwards with the ball: 8 m take 10 s of the 30 s that the rules allow [m/s]."""
 
 _HELD = ROBOT_RADIUS
-"""From the robot's centre to that of a ball in its mouth [m]."""
+"""Distance from the robot's centre to the centre of a ball in its mouth [m]."""
 
 _PLACED, _STILL_PLACED = 0.06, 0.12
-"""The ball is let go this near to the spot, and taken again beyond; the rules ask for 0.15 m [m]."""
+"""Distances to the spot at which the ball is released and taken again [m]; the rules ask for 0.15 m."""
 
 _REST = 0.1
 """A ball or robot slower than this is at rest [m/s]."""
 
 _OFF = 0.25
-"""From here on a robot may turn without touching the ball [m]."""
+"""Distance from which a robot can turn without touching the ball [m]."""
 
 _AT_WALL = 0.05
-"""A ball this far behind a line is pulled inwards first: beside it there may be a wall or a goal [m]."""
+"""A ball this far behind a line is first pulled inwards, because a wall or a goal may be beside it [m]."""
 
 _CLEAR_OF_WALL = 0.1
-"""How far inside the lines it is free of them [m]."""
+"""Distance inside the lines from which the ball counts as free [m]."""
 
 _IN_MOUTH = 0.12
-"""A ball in the goal's mouth nearer to its line is pulled straight out first, past the posts [m]."""
+"""A ball in the goal mouth this close to the goal line is first pulled straight out past the posts [m]."""
 
 _BESIDE_GOAL = 0.25
-"""A ball behind the goal line this near to a goal lies in the corner beside it [m]."""
+"""A ball behind the goal line this near to a goal counts as in the corner beside it [m]."""
 
 _CLEAR = STOP_DISTANCE + ROBOT_RADIUS + BALL_RADIUS + 0.1
 
 
 @skill
 class PlaceBall(DrivingSkill):
-    """Pull the ball to the referee's spot, let go of it and back off.
+    """Pull the ball to the referee's spot, release it and back off.
 
-    Never ends by itself: the referee decides when the ball lies well. FAILURE
-    while the referee does not ask for it.
+    Never ends by itself: the referee decides when the placement is complete. FAILURE while the referee asks
+    for no placement.
 
     Source of the order of steps: RoboCup SSL rules, chapter "Ball Placement".
 
@@ -68,7 +68,7 @@ class PlaceBall(DrivingSkill):
     _refuge: Point | None = field(default=None, init=False)
 
     def on_start(self) -> None:
-        """Begin with a ball that is not in its place."""
+        """Forget that the ball was placed."""
         self._there = self._let_go = self._inwards = False
 
     def on_running(self) -> Status:
@@ -106,12 +106,12 @@ class PlaceBall(DrivingSkill):
         if gap >= _CLEAR:
             return self.run("clear of it")
         if gap < _OFF:
-            # Straight back and at once: a robot that turns or creeps drags the ball along.
+            # Drive straight back at once: a robot that turns or creeps drags the ball along.
             away = direction(ball.position, me.position)
             place = (ball.x + _CLEAR * cos(away), ball.y + _CLEAR * sin(away))
             self.store.command = drive(me, place, me.heading, me.limits, frame.period)
         else:
-            # One way out is settled on: near a wall there are two, which are equally long.
+            # Keep one way out, because near a wall there are two of equal length.
             if self._refuge is None:
                 self._refuge = way_out(frame, me, (ball.position, ball.position), _CLEAR * 1.1)
             self.store.command = travel(
@@ -120,7 +120,7 @@ class PlaceBall(DrivingSkill):
         return self.run("backing off")
 
     def _via(self, spot: Point) -> Point:
-        """Return where the ball is pulled to now: from goals, walls and corners straight inwards first."""
+        """Return the ball's current target; from goals, walls and corners it first goes straight inwards."""
         lines, (x, y) = self.frame.field, self.ball.position
         slack = _CLEAR_OF_WALL if self._inwards else 0.0
         in_mouth = abs(y) < lines.goal_width / 2
@@ -131,11 +131,12 @@ class PlaceBall(DrivingSkill):
             return spot
         inside_x, inside_y = lines.half_length - _CLEAR_OF_WALL, lines.half_width - _CLEAR_OF_WALL
         if in_mouth:
-            # Out of the goal past its posts.
+            # Pull it out of the goal, past the posts.
             inside_x -= _IN_MOUTH + _CLEAR_OF_WALL
             inside_y = lines.goal_width / 2 - ROBOT_RADIUS - _CLEAR_OF_WALL
         elif abs(x) > lines.half_length and abs(y) < lines.goal_width / 2 + _BESIDE_GOAL:
-            # Aslant from beside the goal, whose wall leaves the robot no room straight behind the ball.
+            # Pull it at an angle from beside the goal, whose wall leaves no room for the robot straight
+            # behind the ball.
             return (copysign(inside_x, x), y + copysign(abs(x) - inside_x, y))
         return (min(inside_x, max(-inside_x, x)), min(inside_y, max(-inside_y, y)))
 

@@ -19,15 +19,15 @@ _OWN_HALF = ROBOT_RADIUS + 0.03
 
 @skill
 class PrepareRestart(Skill):
-    """Stand behind the ball of the own restart, facing where it is to go.
+    """Stand behind the ball of the own restart, facing the kick's target.
 
-    That is the target of ``shot``, else of ``pass_``, else the opponent's goal. In
-    a stop it keeps to the rules' distance. SUCCESS once the restart may be taken,
-    FAILURE while the own team has none.
+    The target is that of ``shot``, else of ``pass_``, else the opponent's goal. During a stop the robot keeps
+    the distance that the rules ask for. SUCCESS once the restart may be taken, FAILURE while the own team has
+    none.
 
     Args:
-        gap: from the ball to the robot's centre [m].
-        stay: stay there, running, when it may be taken too.
+        gap: distance from the ball to the robot's centre [m].
+        stay: keep running there even once the restart may be taken.
     """
 
     reads = ("shot", "pass_")
@@ -47,7 +47,7 @@ class PrepareRestart(Skill):
         spot = game.placement or frame.ball.position
         x, y = _before(spot, self._aim(), -(_STOP_GAP if game.stopped else self.gap))
         if game.restart is Restart.KICKOFF and x > -_OWN_HALF:
-            # Only in its own half, even where the ball is to go back.
+            # The robot stays in its own half, even if the ball is to be kicked back.
             x, y = _before(spot, frame.field.their_goal, -(_STOP_GAP if game.stopped else self.gap))
         if game.stopped and not frame.field.contains(x, y):
             x, y = _before(spot, (0.0, 0.0), _STOP_GAP)
@@ -62,7 +62,7 @@ class PrepareRestart(Skill):
 
 
 def _before(spot: Point, point: Point, gap: float) -> Point:
-    """``gap`` metres from ``spot`` towards ``point``, towards +x where both are one; behind when negative."""
+    """Return the point ``gap`` metres from ``spot`` towards ``point``, or towards +x if both are equal."""
     (x, y), (point_x, point_y) = spot, point
     dx, dy = point_x - x, point_y - y
     length = hypot(dx, dy)

@@ -11,7 +11,7 @@ from robobt.world.game import GameState, Team
 
 
 class Phase(StrEnum):
-    """What the referee lets a team do."""
+    """The phase of the game, which decides what a team may do."""
 
     HALT = "halt"
     STOP = "stop"
@@ -29,9 +29,9 @@ class Phase(StrEnum):
 def phase(game: GameState, team: Team) -> Phase:
     """Return the phase of the game as ``team`` sees it.
 
-    Halts and time-outs are HALT. STOP comes before its restart, whichever that is;
-    the restart's own phase lasts from the referee's command until the ball is in
-    play. Whatever is neither play nor a restart of one of the teams is STOP, too.
+    Halts and time-outs are HALT. STOP precedes every restart; the restart's own phase lasts from the
+    referee's command until the ball is in play. Everything that is neither play nor a restart of one of the
+    teams is also STOP.
     """
     if game.halted:
         return Phase.HALT
@@ -45,15 +45,15 @@ def phase(game: GameState, team: Team) -> Phase:
 class RefereeSwitch(Switch, Bound[Store]):
     """Ticks the child for the present :class:`Phase`, and only that one.
 
-    FAILURE, and the robot stands, in a phase that has no child. When the phase
-    changes, the old phase's child is interrupted before the new one is ticked.
+    In a phase without a child it fails and the robot stands still. When the phase changes, the old phase's
+    child is interrupted before the new one is ticked.
 
     Args:
         cases: a child for each phase by its name; one child may serve several phases.
         otherwise: the child for every other phase.
 
     Raises:
-        ValueError: a case does not name a phase; the message lists those there are.
+        ValueError: a case does not name a phase; the message lists all phases.
     """
 
     kind = Phase

@@ -1,9 +1,8 @@
-"""Where RoboBulls' path planner sends a robot first: round the ball and round other robots.
+"""The first waypoint of RoboBulls' path planner, round the ball and other robots.
 
-Source: RoboBulls' published code, PathPlannerFPPA. Only the first waypoint is
-ever driven to, so only the first is worked out. Its side is fixed: to the right
-of the way unless that leads off the field, even where the left would be shorter;
-that is what the published times hold.
+Source: RoboBulls' published code, PathPlannerFPPA. Only the first waypoint is ever driven to, so only the
+first is computed. It is always to the right of the way unless that leads off the field, even if the left is
+shorter; the published times include this.
 """
 
 from __future__ import annotations
@@ -27,7 +26,7 @@ _ROBOT_FREE = 2 * RADIUS + 0.05
 
 
 def first_waypoint(frame: Frame, me: RobotState, goal: Point, *, goalkeeper: bool = False) -> Point:
-    """Return where to drive now to get to ``goal`` without touching the ball or a robot [m].
+    """Return the next waypoint towards ``goal`` that avoids the ball and the robots [m].
 
     ``me`` may drive in its own defence area if it is the ``goalkeeper``.
     """
@@ -46,7 +45,7 @@ def first_waypoint(frame: Frame, me: RobotState, goal: Point, *, goalkeeper: boo
 
 
 def allowed(field: FieldGeometry, point: Point, *, goalkeeper: bool = False) -> Point:
-    """Move the point to where a robot may go: 0.1 m inside the lines, out of the defence areas [m]."""
+    """Move the point to where a robot may go: 0.1 m inside the lines and out of the defence areas [m]."""
     x, y = point
     x = min(max(x, _BORDER - field.half_length), field.half_length - _BORDER)
     y = min(max(y, _BORDER - field.half_width), field.half_width - _BORDER)
@@ -63,7 +62,7 @@ def allowed(field: FieldGeometry, point: Point, *, goalkeeper: bool = False) -> 
 
 
 def _in_the_way(start: Point, end: Point, ball: Point, others: list[Point]) -> Point | None:
-    # A place behind the ball lies inside the distance itself; to reach it does not count as a hit.
+    # A place behind the ball is itself inside this distance, so reaching it does not count as a collision.
     if segment_distance(ball, start, end) <= _BALL_HIT:
         return ball
     for other in others:

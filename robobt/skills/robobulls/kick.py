@@ -1,7 +1,7 @@
 """Kicking as the paper's team did it: get behind the ball, line up, creep forward, kick.
 
-Source: RoboBulls' published code, KickToPointOmni. Its counters of 30 ms cycles
-are times here, so that the skill does the same at any control period.
+Source: RoboBulls' published code, KickToPointOmni. Its counters of 30 ms cycles are converted to times, so
+that the skill behaves the same at any control period.
 """
 
 from __future__ import annotations
@@ -36,14 +36,14 @@ _CREEP = 0.2
 _LOST = 6 * RADIUS
 _ROLLING = 0.5
 
-# "More than n cycles of 30 ms", put half a cycle late so that rounding cannot move it.
+# "More than n cycles of 30 ms", half a cycle later so that rounding cannot shift it.
 _SETTLED = 5.5 * 0.03
 _LOCKED = 15.5 * 0.03
 _KICKING = 100 * 0.03
 
 
 class Stage(StrEnum):
-    """What the kick is busy with."""
+    """The stages of the kick."""
 
     BEHIND = "driving behind the ball"
     LINE_UP = "lining up"
@@ -53,7 +53,7 @@ class Stage(StrEnum):
 
 @dataclass(kw_only=True)
 class RobobullsKick:
-    """One robot's way to kick the ball at a point; a plain object to be ticked.
+    """One robot's kick at a point, as a plain object that is ticked.
 
     The stages and what ends them:
 
@@ -66,11 +66,10 @@ class RobobullsKick:
 
     *There* is a box of 0.1 m and 5 degrees, *holds* is a ball within 0.1415 m and
     75 degrees, and it *can kick* when the target lies within ``tolerance`` of the
-    heading and the ball within 60 degrees. A robot that has had the ball more
-    than 5 degrees off its heading for 0.48 s is *kick-locked*: it starts again
-    from BEHIND and cannot kick before it has been there.
+    heading and the ball within 60 degrees. A robot that has had the ball more than 5 degrees off its heading
+    for 0.48 s is *kick-locked*: it restarts from BEHIND and cannot kick before it has completed that stage.
 
-    It kicks at ``kick_speed`` [m/s] where heading and target are at most ``tolerance`` apart [rad]; a
+    It kicks at ``kick_speed`` [m/s] when heading and target differ by at most ``tolerance`` [rad]; a
     ``goalkeeper`` may drive in its own defence area.
     """
 

@@ -1,9 +1,8 @@
-"""Drive a robot to a pose as the paper's team did.
+"""Drive a robot to a pose the way the paper's team did.
 
-Source: RoboBulls' published code, PilotOmni. Its turns round the ball, and with
-them the paper's times, depend on how this pilot takes a bend, so the baseline
-keeps it beside robobt's own (:mod:`robobt.motion.pilot`). Left out is its guard
-against jumps of the vision, which a frame's velocities do not have.
+Source: RoboBulls' published code, PilotOmni. The turns round the ball, and so the paper's times, depend on
+how this pilot drives a bend, so the baseline keeps it besides robobt's own (:mod:`robobt.motion.pilot`). Its
+guard against jumps of the vision is left out, because a frame's velocities have no such jumps.
 """
 
 from __future__ import annotations
@@ -25,9 +24,9 @@ def robobulls_drive(
 ) -> RobotCommand:
     """Compute the command that brings ``me`` one control period nearer to a pose.
 
-    The commanded velocity leads straight to the target at the speed from which
-    ``limits.braking`` just stops there; it differs from the present velocity by
-    no more than ``limits.acceleration`` allows, in whatever direction.
+    The commanded velocity points straight at the target, at the speed from which ``limits.braking`` just
+    stops there. It differs from the present velocity by at most what ``limits.acceleration`` allows, in any
+    direction.
 
     Arguments are those of :func:`robobt.motion.pilot.drive`.
     """
@@ -40,7 +39,7 @@ def robobulls_drive(
     dx, dy = target[0] - me.x, target[1] - me.y
     left = max(hypot(dx, dy) - _THERE, 0.0)
     speed = min(sqrt(2.0 * limits.braking * left), limits.max_speed)
-    # Driving while turning bends the way; half of the turn is taken off beforehand.
+    # Turning while driving bends the path, so half of the turn is subtracted in advance.
     course = atan2(dy, dx) - 0.5 * omega * period
     change = limit_norm(
         speed * cos(course) - me.vx, speed * sin(course) - me.vy, limits.acceleration * period

@@ -1,1 +1,1 @@
-"""What robots that play ``team_player`` agree on: tasks, places, passes and marks."""
+"""The agreement of robots that play ``team_player``: tasks, places, passes and marks."""

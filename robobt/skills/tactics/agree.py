@@ -1,7 +1,7 @@
-"""Agree on who does what, once a frame.
+"""Assign tasks to the players, once per frame.
 
-Whoever asks first does it for all. Every choice reads the last one, so that a robot keeps what it
-does until something else is clearly better.
+The first robot that asks updates the plan for all. Every choice depends on the last one, so that a robot
+keeps its task until another is clearly better.
 """
 
 from __future__ import annotations
@@ -53,7 +53,7 @@ def agree(frame: Frame, team: TeamStore) -> Plan:
 
 
 def pass_under_way(frame: Frame, team: TeamStore) -> bool:
-    """Return whether an own pass still rolls towards its receiver."""
+    """Return whether an own pass is still rolling towards its receiver."""
     if team.receiver is None or not 0.0 <= frame.time - team.pass_time <= team.plan.tactics.pass_lasts:
         return False
     if frame.time - team.pass_time < 0.2:
@@ -81,7 +81,7 @@ def _look(frame: Frame, plan: Plan) -> None:
 
 @compiled_lean
 def _limit(movers_: FloatArray, most: float) -> None:
-    """Let robots be no faster, and speed up no faster, than ``most``."""
+    """Limit the robots' speed and acceleration to ``most``."""
     movers = movers_.view(MOVER)
     for i in range(len(movers)):
         mover: Mover = movers[i, 0]
@@ -121,7 +121,7 @@ def _attacker(frame: Frame, team: TeamStore, plan: Plan) -> int | None:
         return None
     shot = ball.vx > plan.tactics.shot_from and not pass_under_way(frame, team)
     if shot and game.in_play and team.attacker in plan.own_times and team.attacker != team.kicker:
-        # Who gets it depends on what stops it.
+        # Who gets the ball depends on what stops it.
         return team.attacker
     spot = game.placement if not game.in_play and game.placement is not None and not placing else None
     meant = team.receiver if pass_under_way(frame, team) else None
@@ -131,7 +131,7 @@ def _attacker(frame: Frame, team: TeamStore, plan: Plan) -> int | None:
         if robot.id not in plan.players or robot.id == team.kicker:
             candidates += _NO_CANDIDATE
         elif spot is not None:
-            # Nobody has the ball yet, nor is beyond it.
+            # No robot has the ball yet or is beyond it.
             time = distance(spot, robot.position) / 2.0
             candidates += Candidate(time, ball.x, False)
         else:
@@ -150,7 +150,7 @@ def _attacker(frame: Frame, team: TeamStore, plan: Plan) -> int | None:
 
 
 def _meeting(frame: Frame, team: TeamStore, plan: Plan) -> Point | None:
-    """Return where the attacker meets the ball, to within a few centimetres so that it changes seldom."""
+    """Return where the attacker meets the ball, rounded to a few centimetres so that it seldom changes."""
     if frame.ball.speed < plan.tactics.meeting_from or not frame.game.in_play:
         return None
     for row, robot in enumerate(frame.own):
@@ -161,7 +161,7 @@ def _meeting(frame: Frame, team: TeamStore, plan: Plan) -> Point | None:
 
 
 class _Job(NamedTuple):
-    """A task at a place; ``what`` is the number of the opponent to mark, or which part of the wall it is."""
+    """A task at a place; ``what`` is the number of the opponent to mark, or the place in the wall."""
 
     task: Task
     place: Point
@@ -169,7 +169,7 @@ class _Job(NamedTuple):
 
 
 def _share_out(frame: Frame, team: TeamStore, plan: Plan, players: list[RobotState]) -> None:
-    """Give everybody but the attacker a task and a place."""
+    """Give every player except the attacker a task and a place."""
     if abs(frame.ball.x) > plan.tactics.ahead_from:
         plan.ahead = frame.ball.x > 0.0
     team.threats = []
@@ -188,13 +188,13 @@ def _share_out(frame: Frame, team: TeamStore, plan: Plan, players: list[RobotSta
 
 
 def _meant(frame: Frame, team: TeamStore, plan: Plan) -> dict[int, Task]:
-    """Send the receivers that passes are meant for to where they get them."""
+    """Send the intended receivers to where they will get their passes."""
     tasks: dict[int, Task] = {}
     intended = plan.next_pass
     if intended is not None:
         plan.meant[intended.receiver] = frame.time, intended.target
     for number, (time, target) in plan.meant.items():
-        # Whoever was meant a moment ago stays, for it may be meant again.
+        # A robot that was the receiver a moment ago stays, because it may be chosen again.
         if (
             number in plan.players
             and number != team.attacker
@@ -206,7 +206,7 @@ def _meant(frame: Frame, team: TeamStore, plan: Plan) -> dict[int, Task]:
 
 
 def _jobs(frame: Frame, team: TeamStore, plan: Plan, players: int, free: int) -> list[_Job]:
-    """Return what there is to do for ``free`` of the players, the most urgent first."""
+    """Return the tasks for ``free`` of the players, the most urgent first."""
     tactics = plan.tactics
     walls = 0 if plan.without == "wall" else wall_size(plan, players, free)
     jobs = [_Job(Task.WALL, place, index) for index, place in enumerate(wall_places(frame, walls, tactics))]
@@ -232,7 +232,7 @@ def _jobs(frame: Frame, team: TeamStore, plan: Plan, players: int, free: int) ->
 def _hand_out(
     frame: Frame, plan: Plan, free: list[RobotState], jobs: list[_Job]
 ) -> Iterator[tuple[RobotState, _Job]]:
-    """Yield who does what, at the least cost; whoever did it before is preferred."""
+    """Yield the assignment of tasks with the least cost; a player's previous task is preferred."""
     if not jobs:
         return
     waiting = {robot.id for robot in free}
@@ -243,7 +243,7 @@ def _hand_out(
         for j, job in enumerate(jobs):
             if old is job.task and (old is not Task.MARK or plan.marks.get(robot.id) == job.what):
                 times[i, j] -= plan.tactics.keep_gain
-    # Crossing over is worse than two short ways: the longest counts most.
+    # Times are squared so that the longest way counts most, which avoids crossing ways.
     cost = times + plan.tactics.long_way * times * times
     for row, column in assign(cost):
         yield free[row], jobs[column]
@@ -254,7 +254,7 @@ def _near(intended: Pass | None, place: Point, gap: float) -> bool:
 
 
 def wall_size(plan: Plan, players: int, free: int) -> int:
-    """Return how many robots cover the goal, of so many players of which so many are free."""
+    """Return how many robots cover the goal, from the number of players and of free players."""
     most = 1 if players <= 2 else 2 if players <= 6 else 3
     if plan.ours and plan.ahead:
         most -= 1

@@ -1,4 +1,4 @@
-"""Share out tasks so that all together cost least."""
+"""Assign tasks at the least total cost."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ _NOBODY = -1
 
 
 def assign(cost: FloatArray) -> list[tuple[int, int]]:
-    """Return who does what at the least total cost, as pairs (row, column) in the order of the rows.
+    """Return the assignment with the least total cost, as pairs (row, column) in the order of the rows.
 
-    ``cost`` (n, m) is finite; of the longer side some are left over. Nothing bigger than numpy is asked for
-    that, so that a match starts quickly.
+    ``cost`` (n, m) is finite; if n and m differ, the surplus rows or columns stay unassigned. This needs only
+    numpy, so that a match starts quickly.
 
     Source: Jonker and Volgenant, "A shortest augmenting path algorithm for dense and sparse linear
     assignment problems", 1987.
@@ -29,7 +29,7 @@ def assign(cost: FloatArray) -> list[tuple[int, int]]:
 def _columns(cost: FloatArray) -> NDArray[np.int64]:
     """Return the column of each row, (n,), of costs with at least as many columns as rows.
 
-    Row by row the cheapest way is found to a free column, on which rows before may move on to others; the
+    For each row it finds the cheapest augmenting path to a free column, which may reassign earlier rows; the
     prices keep every reduced cost at zero or more.
     """
     rows, columns = cost.shape

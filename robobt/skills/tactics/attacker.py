@@ -1,4 +1,4 @@
-"""Who of a team goes for the ball: the law, compiled, for a team's plan and for arenas."""
+"""The compiled rule that decides which robot goes for the ball, for a team's plan and for arenas."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ NOBODY = -1
 
 
 class Candidate(NamedTuple):
-    """A robot of the team.
+    """A robot that may go for the ball.
 
     Attributes:
-        time: when it can have the ball [s]; infinite where it may not go for it.
-        x: where it is [m].
+        time: when it can have the ball [s]; infinite if it may not go for the ball.
+        x: x coordinate of the robot [m].
         has_ball: whether it has the ball.
     """
 
@@ -50,20 +50,20 @@ def choose_attacker(
     restart: bool,
     numbers: FloatArray,
 ) -> int:
-    """Return who goes for the ball: whoever has it soonest, unless who did so before is hardly later.
+    """Return who goes for the ball: the soonest robot, unless the previous attacker is hardly later.
 
     Args:
         candidates: (n, 3) :data:`CANDIDATE` of the team's robots.
         ball_x: x of the ball [m].
         ball_speed: its speed [m/s].
         meant: row of the receiver of a pass under way, :data:`NOBODY` without one.
-        before: row of who went for it last, :data:`NOBODY` without one.
-        attacking_for: how long that robot has done so [s].
+        before: row of the previous attacker, :data:`NOBODY` without one.
+        attacking_for: how long that robot has been the attacker [s].
         restart: whether a restart is to be taken.
-        numbers: of :func:`~robobt.skills.tactics_settings.applied`.
+        numbers: result of :func:`~robobt.skills.tactics_settings.applied`.
 
     Returns:
-        Its row; ``NOBODY`` where no robot may.
+        The row of the attacker; ``NOBODY`` if no robot may go for the ball.
     """
     tactics: AppliedTactics = numbers.view(TACTICS)[0]
     best, least, present = NOBODY, inf, inf

@@ -28,14 +28,14 @@ from robobt.world.state import Frame, RobotState
 
 
 class _Allowed(NamedTuple):
-    """Which passes are looked for.
+    """The conditions for passes in a search.
 
     Attributes:
-        least: chance with which they arrive, at least.
-        chips: whether they may fly.
-        shortest: length of one along the ground [m].
-        area_gap: from its target to the defence areas [m].
-        widest: angle in which one is sent on with one touch [rad].
+        least: least chance that the pass arrives.
+        chips: whether passes may be chipped.
+        shortest: least length of a pass along the ground [m].
+        area_gap: least distance from the pass's target to the defence areas [m].
+        widest: largest angle by which a pass is redirected with one touch [rad].
     """
 
     least: float
@@ -57,7 +57,7 @@ class _Rated(Protocol):
 _RATED = record_dtype(_Rated)
 
 _TAKEN, _SENT_ON, _CHIPPED = 0, 1, 2
-"""Kinds of passes: what the receiver does with one along the ground, or one that flies."""
+"""Kinds of passes: along the ground, by what the receiver does with it, or chipped."""
 
 _RINGS = ((0.0, 1), (0.35, 6), (0.8, 8))
 
@@ -73,11 +73,11 @@ def passes(
     most: int = 8,
     chips: bool = True,
 ) -> list[Pass]:
-    """Return the best passes from where the ball lies, at most ``most``, the best first.
+    """Return up to ``most`` passes from the ball's position, the best first.
 
-    To every team-mate there are points about it that it can reach before the ball. A pass scores the
-    chance to arrive, which is at least ``least``, times what the ball is worth there; ``last`` counts
-    ``keep`` times. ``chips`` says whether it may fly over opponents.
+    The targets are points around every team-mate that it can reach before the ball. A pass scores its chance
+    to arrive, which is at least ``least``, times the ball's value at the target; the score of ``last`` is
+    multiplied by ``keep``. ``chips`` says whether passes may fly over opponents.
     """
     plan, ball, tactics = team.plan, frame.ball, team.plan.tactics
     own, opponents = plan.own_movers, plan.their_movers

@@ -1,7 +1,7 @@
-"""The chance that a shot scores and what the ball is worth somewhere, for many points at once, compiled.
+"""Compiled functions for many points at once: the chance that a shot scores, and the ball's value at a point.
 
-Shots compare where the ball is when with what opponents can reach by then, as the league's teams do.
-The scales were chosen by hand in this simulator; they are no calibrated probabilities.
+A shot's chance compares the ball's position over time with what opponents can reach by then, as the league's
+teams do. The scales were chosen by hand in this simulator; the results are not calibrated probabilities.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ _AIMS = 13
 
 
 class AimedShot(NamedTuple):
-    """A shot's chance to score, the y of its aim on the goal line [m] and the half angle as good [rad]."""
+    """A shot's chance to score, the y of its aim on the goal line [m] and its half angle [rad]."""
 
     chance: float
     y: float
@@ -43,10 +43,10 @@ class AimedShot(NamedTuple):
 def shot_chance(
     x: float, y: float, delay: float, opponents: Sequence[Mover], tactics: AppliedTactics
 ) -> AimedShot:
-    """Return the best shot from (x, y) that is kicked ``delay`` from now [s].
+    """Return the best shot from (x, y) with the kick in ``delay`` seconds.
 
-    Until then opponents near their goal move to between its middle and the ball; from the kick on
-    everybody reaches out for it.
+    Until the kick, opponents near their goal move between its middle and the ball; after the kick every
+    opponent tries to reach the ball.
     """
     goal_x, half_goal = tactics.half_length, tactics.half_goal
     gx, gy = goal_x - x, -y
@@ -64,7 +64,7 @@ def shot_chance(
     low, high = _longest_run(chances, 0.85 * top)
     at_y = (half_goal - tactics.inset) * ((low + high) / (_AIMS - 1) - 1.0)
     wide = (half_goal - tactics.inset) * 2.0 * (high - low + 1) / (_AIMS - 1)
-    # The kick's own error grows with the way.
+    # The kick's own error grows with the distance.
     chance = top * min(1.0, 1.6 / max(0.5, 0.4 * to_goal + 0.4))
     return AimedShot(chance, at_y, 0.5 * wide * gx / (to_goal * to_goal))
 
@@ -73,7 +73,7 @@ def shot_chance(
 def _between(
     x: float, y: float, delay: float, opponents: Sequence[Mover], tactics: AppliedTactics
 ) -> Sequence[Place]:
-    """Return where opponents are at the kick: those near their goal between its middle and (x, y)."""
+    """Return opponents' positions at the kick; those near their goal move between its middle and (x, y)."""
     where: Sequence[Place] = records(len(opponents), PLACE)
     goal_x = tactics.half_length
     gx, gy = goal_x - x, -y
@@ -81,7 +81,8 @@ def _between(
     for j, opponent in enumerate(opponents):
         px, py = opponent.x, opponent.y
         if delay > 0.0 and hypot(goal_x - px, py) < tactics.near_goal:
-            # Across to the line from the ball to the goal's middle, each on its side of it.
+            # They move sideways to the line from the ball to the goal's middle, each staying on its side of
+            # it.
             across = ((px - x) * gy - (py - y) * gx) / to_goal
             free = max(0.0, delay - tactics.reaction)
             reach = min(0.5 * opponent.acceleration * 0.7 * free * free, opponent.max_speed * free)
@@ -105,9 +106,9 @@ def _room(
     opponents: Sequence[Mover],
     tactics: AppliedTactics,
 ) -> float:
-    """Return how far a shot at the y ``aim`` passes a post or who reaches out for it, at least [m].
+    """Return the least distance of a shot at the y ``aim`` from the posts and the opponents' reach [m].
 
-    Once that is far below 0 the rest is not looked at.
+    The search stops once the distance is far below 0.
     """
     goal_x, half_goal = tactics.half_length, tactics.half_goal
     dx, dy = goal_x - x, aim - y
@@ -119,11 +120,11 @@ def _room(
         if along < -_BODY or along > length + _BODY:
             continue
         time = min(max(along, 0.0), length) / tactics.shot_speed
-        # It goes on as it moves now, less sure the later.
+        # The opponent keeps its velocity, with less certainty later on.
         goes = min(time, 0.3) if delay < 0.15 else 0.0
         px, py = where[j].x + goes * opponent.vx, where[j].y + goes * opponent.vy
         aside = abs((px - x) * uy - (py - y) * ux)
-        # Goalkeepers see a robot aim; most robots are too far off even so.
+        # Goalkeepers see a robot aim; most robots are too far away even with that.
         free = max(0.0, time - 0.1 + tactics.sees)
         gap = aside - _BODY - 0.5 * opponent.acceleration * free * free
         if gap < least and hypot(goal_x - px, py) >= tactics.keeps:
@@ -138,7 +139,7 @@ def _room(
 
 @compiled
 def _longest_run(chances: FloatArray, enough: float) -> tuple[int, int]:
-    """Return the first and the last of the most aims side by side whose chance is at least ``enough``."""
+    """Return the first and last aim of the longest run of aims with a chance of at least ``enough``."""
     low, high, longest = 0, 0, 0
     for a in range(len(chances)):
         if chances[a] >= enough:
@@ -152,7 +153,7 @@ def _longest_run(chances: FloatArray, enough: float) -> tuple[int, int]:
 
 @compiled
 def redirect_angle(ox: float, oy: float, x: float, y: float, goal_x: float) -> float:
-    """Return the angle at (x, y) between where a ball from (ox, oy) comes from and the goal [rad]."""
+    """Return the angle at (x, y) between the directions to the origin (ox, oy) and to the goal [rad]."""
     turn = atan2(oy - y, ox - x) - atan2(-y, goal_x - x)
     while turn > pi:
         turn -= 2.0 * pi
@@ -172,8 +173,9 @@ def aim_of(
 ) -> float:
     """Return the heading [rad] from which a ball kicked at once leaves along (heading_x, heading_y).
 
-    A kick sends the ball along the heading, with :func:`redirect_kick`, and leaves its sideways speed as it
-    was: the one that comes in with (incoming_x, incoming_y) [m/s] is aimed that much to the other side.
+    A kick sends the ball along the heading at the speed of :func:`redirect_kick` and keeps its sideways
+    speed. The heading compensates for the sideways speed of a ball that comes in with (incoming_x,
+    incoming_y) [m/s].
     """
     wanted = atan2(heading_y, heading_x)
     heading = wanted
@@ -199,10 +201,10 @@ def point_worth(
     opponents: Sequence[Mover],
     tactics: AppliedTactics,
 ) -> float:
-    """Return what the ball is worth at (x, y) when it gets there ``delay`` from now out of (ox, oy).
+    """Return the ball's value at (x, y) when it arrives there in ``delay`` seconds from (ox, oy).
 
-    As a chance of a goal: by a shot at once or after a turn, or by what comes later, the more the
-    nearer to the goal and the freer of opponents it is.
+    The value is a chance of a goal: by a shot at once, by a shot after a turn, or by later play, which counts
+    more the nearer the goal and the farther the opponents are.
     """
     goal_x = tactics.half_length
     to_goal = hypot(goal_x - x, y)
@@ -213,7 +215,7 @@ def point_worth(
         shot = shot_chance(x, y, delay + turn, opponents, tactics).chance
         if angle > tactics.widest:
             shot *= 0.7
-    # Whoever comes later than this counts as little as nobody.
+    # An opponent that arrives later than this counts as no opponent.
     first = min(10.0, delay + 0.5 * tactics.free + 1e-9)
     for opponent in opponents:
         if not cannot_pass_by(opponent, x, y, first, tactics):
@@ -232,7 +234,7 @@ def rate_points(
     opponents_: FloatArray,
     numbers: FloatArray,
 ) -> FloatArray:
-    """Rate passes from (ox, oy) to every point: (G, 2), chance to arrive and worth there.
+    """Rate passes from (ox, oy) to every point: (G, 2), the chance to arrive and the ball's value there.
 
     ``delay`` is the time until the kick [s]; ``points`` are (G, 2) [m]; ``numbers`` are those of
     :func:`~robobt.skills.tactics_settings.applied`.
@@ -254,13 +256,13 @@ def rate_points(
 def shot_from(
     x: float, y: float, delay: float, opponents_: FloatArray, numbers: FloatArray
 ) -> tuple[float, float, float]:
-    """Return what :func:`shot_chance` does, to Python: ``numbers`` as of :func:`rate_points`."""
+    """Return the result of :func:`shot_chance` to Python; ``numbers`` as in :func:`rate_points`."""
     shot = shot_chance(x, y, delay, mover_records(opponents_), numbers.view(TACTICS)[0])
-    # Python gets a plain tuple in half the time.
+    # A plain tuple reaches Python in half the time.
     return shot.chance, shot.y, shot.half_angle
 
 
 @compiled
 def worth_at(origin: Point, place: Point, delay: float, opponents_: FloatArray, numbers: FloatArray) -> float:
-    """Return what :func:`point_worth` does, to Python: ``numbers`` as of :func:`rate_points`."""
+    """Return the result of :func:`point_worth` to Python; ``numbers`` as in :func:`rate_points`."""
     return point_worth(*origin, *place, delay, mover_records(opponents_), numbers.view(TACTICS)[0])

@@ -1,4 +1,4 @@
-"""Decide what to do with the ball: shoot, pass, or neither yet."""
+"""Decide what to do with the ball: shoot, pass, or wait."""
 
 from __future__ import annotations
 
@@ -21,23 +21,23 @@ _SHOWN = 5
 
 @skill
 class ChooseKick(Skill):
-    """Write the best shot to ``shot`` or the best pass to ``pass_``, and nothing to the other.
+    """Write the best shot to ``shot`` or the best pass to ``pass_``, and None to the other.
 
-    Both are worth the chance of a goal that follows from them. What is demanded falls while the
-    robot has the ball, and an opponent close by ends the waiting. FAILURE while nothing is good enough.
+    Both are rated by the chance of a goal that follows from them. The thresholds fall while the robot has the
+    ball, and an opponent close by ends the waiting. FAILURE while neither is good enough.
 
     Args:
-        shoot_at: chance of a goal for which a shot is taken at once, 0 to 1.
-        pass_at: worth for which a pass is played at once, 0 to 1.
-        patience: time in which both fall to their floor [s].
-        floor: share of both that remains.
-        keep: factor on what was chosen last.
-        least: chance with which a pass has to arrive, 0 to 1.
-        every: from one look to the next [s].
+        shoot_at: chance of a goal from which a shot is taken at once, 0 to 1.
+        pass_at: value from which a pass is played at once, 0 to 1.
+        patience: time in which both thresholds fall to their floor [s].
+        floor: share of both thresholds that remains.
+        keep: factor on the value of the last choice.
+        least: least chance that a pass arrives, 0 to 1.
+        every: time between two ratings [s].
         max_distance: no shots from farther than this from the goal [m].
         model: predictor of a shot's scene: a shipped model or a file.
         chips: whether passes may fly over opponents.
-        restart: whether the ball lies for an own restart: the time counts from when it may be taken.
+        restart: whether an own restart is to be taken; the time then counts from when it may be taken.
 
     Raises:
         ValueError: a chance, worth or share is not 0 to 1, ``patience`` is not positive, or ``keep``,
@@ -78,7 +78,7 @@ class ChooseKick(Skill):
         self._rater = ExpectedGoal(model=self.model, threshold=0.6)
 
     def on_running(self) -> Status:
-        """Weigh shots and passes."""
+        """Rate shots and passes."""
         store, frame, me, ball = self.store, self.frame, self.me, self.ball
         plan = agree(frame, store.team)
         tactics = plan.tactics
@@ -108,7 +108,7 @@ class ChooseKick(Skill):
         if self._pass is not None:
             plan.next_pass_time = frame.time
             if self.restart and self._pass.wait > 0.0:
-                # Who waits at a restart must not touch the ball yet.
+                # A robot that waits at a restart must not touch the ball yet.
                 return self.fail(f"{self._pass.receiver} is not there yet")
             return self.succeed(f"pass to {self._pass.receiver}, {self._pass.score:.2f}")
         if self._shot is not None:
@@ -137,7 +137,7 @@ class ChooseKick(Skill):
         if shot_score >= max(self.shoot_at * share, 0.9 * pass_score):
             self._shot = shot
         elif best is not None and (pass_score >= enough or late):
-            # Never later than the receiver, unless somebody is about to take the ball away.
+            # Kick no later than the receiver is there, unless an opponent is about to take the ball.
             self._pass = best if best.wait > tactics.in_time and not pressed else replace(best, wait=0.0)
         elif shot_score >= self.shoot_at * share:
             self._shot = shot
@@ -145,7 +145,7 @@ class ChooseKick(Skill):
             self._pass = self._into_space()
 
     def _into_space(self) -> Pass:
-        """Return a short kick towards the opponents' goal, for whoever gets there."""
+        """Return a short kick towards the opponents' goal, for any robot that gets there."""
         ball, (x, y) = self.ball, self.frame.field.their_goal
         tactics = self.store.team.plan.tactics
         space = tactics.into_space

@@ -1,4 +1,4 @@
-"""Where defenders stand: the wall before the own area, and markers."""
+"""Positions of defenders: the wall in front of the own area, and markers."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from robobt.world.state import Frame, RobotId, RobotState
 
 
 def wall_places(frame: Frame, size: int, tactics: TacticsSettings) -> list[Point]:
-    """Return where a wall of ``size`` robots stands, from left to right as they look out."""
+    """Return the positions of a wall of ``size`` robots, from left to right facing out."""
     if size <= 0:
         return []
     ball, lead = frame.ball, tactics.wall_lead
@@ -24,7 +24,7 @@ def wall_places(frame: Frame, size: int, tactics: TacticsSettings) -> list[Point
 def threats(frame: Frame, tactics: TacticsSettings, marked: Collection[int] = ()) -> list[RobotState]:
     """Return the opponents without the ball that could score soon, the most dangerous first.
 
-    Those in ``marked`` stay before others that are hardly nearer to the goal.
+    Opponents in ``marked`` stay ahead of others that are hardly nearer to the goal.
     """
     goal_x, goal_y = frame.field.our_goal
     holder = owner(frame)
@@ -46,7 +46,7 @@ def threats(frame: Frame, tactics: TacticsSettings, marked: Collection[int] = ()
 def mark_places(
     frame: Frame, opponents: list[RobotState], tactics: TacticsSettings
 ) -> list[tuple[int, Point]]:
-    """Return of each of these opponents its number and where to mark it from: towards ball and own goal."""
+    """Return each opponent's number and the place to mark it, on the side of the ball and the own goal."""
     ball, (goal_x, goal_y) = frame.ball, frame.field.our_goal
     goalward, gap, places = tactics.mark_goalward, tactics.mark_gap, []
     for robot in opponents:

@@ -1,4 +1,4 @@
-"""The chance that a pass arrives, from when the ball is where and who can be there by then, compiled."""
+"""The compiled chance that a pass arrives, from the ball's position over time and the robots' reach."""
 
 from __future__ import annotations
 
@@ -21,14 +21,14 @@ _SAMPLES = 8
 
 @compiled
 def kick_speed(length: float, arrival: float, tactics: AppliedTactics) -> float:
-    """Return the kick speed with which a ball has the speed ``arrival`` after ``length`` [m/s, m]."""
+    """Return the kick speed that leaves a ball the speed ``arrival`` after ``length`` [m/s, m]."""
     speed = ball_model.kick_speed(length, arrival, tactics.slide, tactics.roll, tactics.share)
     return min(tactics.fastest_pass, max(tactics.slowest_pass, speed))
 
 
 @compiled
 def flight_time(length: float, speed: float, tactics: AppliedTactics) -> float:
-    """Return when a ball kicked at ``speed`` has gone ``length`` [s]; 10 where it rests before."""
+    """Return when a ball kicked at ``speed`` has covered ``length`` [s]; 10 if it comes to rest before."""
     time = time_for(length, speed, tactics.share * speed, tactics.slide, tactics.roll)
     return time if time < inf else 10.0
 
@@ -51,7 +51,7 @@ def time_to_pass(robot: Mover, x: float, y: float, tactics: AppliedTactics) -> f
 
 @compiled
 def cannot_pass_by(robot: Mover, x: float, y: float, time: float, tactics: AppliedTactics) -> bool:
-    """Return whether :func:`time_to_pass` is surely above ``time`` [s], told without taking roots."""
+    """Return whether :func:`time_to_pass` is certainly above ``time`` [s], without computing roots."""
     free = max(0.0, time - tactics.reaction)
     fastest = abs(robot.vx) + abs(robot.vy) + 0.5 * robot.acceleration * free
     reach = _BODY + min(robot.max_speed, fastest) * free
@@ -70,7 +70,7 @@ def lane_margin(
     robots: Sequence[Mover],
     tactics: AppliedTactics,
 ) -> float:
-    """Return the least head start of a ball over every robot on its way from (ox, oy) to (x, y) [s].
+    """Return the least head start of a ball over all robots on its way from (ox, oy) to (x, y) [s].
 
     ``delay`` is the time until the kick [s], in which the robots may move as well.
     """
@@ -87,7 +87,7 @@ def lane_margin(
             margin = time_to_pass(robot, px, py, tactics) - when
             if margin < least:
                 least = margin
-    # Between the points nothing may stand in the lane either.
+    # No robot may stand in the lane between the points either.
     for robot in robots:
         along = ((robot.x - ox) * dx + (robot.y - oy) * dy) / max(length, 1e-6)
         if 0.0 < along < length:
@@ -120,7 +120,7 @@ def arrive_chance(
 ) -> float:
     """Return the chance that a pass kicked at ``speed`` after ``delay`` gets from (ox, oy) to (x, y).
 
-    Of ``mates``, which block by standing in the lane, number ``skip`` is the receiver.
+    Team-mates that stand in the lane block it; number ``skip`` of ``mates`` is the receiver.
     """
     chance = sigmoid(lane_margin(ox, oy, x, y, speed, delay, opponents, tactics) / tactics.margin)
     dx, dy = x - ox, y - oy
@@ -144,7 +144,7 @@ def chip_speed(length: float, tactics: AppliedTactics) -> float:
 
 @compiled
 def chip_time(length: float, tactics: AppliedTactics) -> float:
-    """Return how long such a chip takes [s]."""
+    """Return the duration of a chip that rolls after a length [s]."""
     return float(tactics.chip_rolls * sqrt(length))
 
 
@@ -162,7 +162,7 @@ def chip_chance(
 ) -> float:
     """Return the chance that a pass chipped after ``delay`` gets from (ox, oy) to (x, y), where it rolls.
 
-    Nobody stops it between rising and falling; number ``skip`` of ``mates`` is the receiver.
+    No robot can stop it in the air; number ``skip`` of ``mates`` is the receiver.
     """
     dx, dy = x - ox, y - oy
     length = max(hypot(dx, dy), 1e-6)
@@ -194,6 +194,6 @@ def chip_chance(
 
 @compiled
 def _in_chips_way(dx: float, dy: float, ux: float, uy: float, gap: float, tactics: AppliedTactics) -> bool:
-    """Tell whether a robot at (dx, dy) from the kick stands where a chip along (ux, uy) has not risen yet."""
+    """Return whether a robot at (dx, dy) from the kick stands where a chip along (ux, uy) is still low."""
     along = dx * ux + dy * uy
     return 0.0 < along < tactics.chip_rises + _BODY + gap and abs(dx * uy - dy * ux) < _BODY + gap

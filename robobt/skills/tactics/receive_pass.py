@@ -1,4 +1,4 @@
-"""Meet a rolling ball: send it on at the goal with one touch where that pays, else take it."""
+"""Meet a rolling ball: redirect it at the goal with one touch if that pays, else take it."""
 
 from __future__ import annotations
 
@@ -24,14 +24,14 @@ from robobt.world.rules import has_ball, in_own_defense_area
 class ReceivePass(Skill):
     """Meet a rolling ball.
 
-    Where the ball's line allows a shot at the goal with one touch that is good enough, the robot
-    stands so that the ball meets its mouth and goes there; else it faces the ball and takes it.
-    FAILURE while the ball does not roll or the robot has it.
+    If the ball's line allows a good enough one-touch shot at the goal, the robot stands so that the ball
+    meets its mouth and is redirected there; else it faces the ball and takes it. FAILURE while the ball does
+    not roll or the robot has it.
 
     Args:
-        slowest: ball that still rolls [m/s].
+        slowest: a ball slower than this does not count as rolling [m/s].
         widest: largest angle between where the ball comes from and the goal [rad].
-        redirect_at: least chance of a goal of a shot with one touch, 0 to 1.
+        redirect_at: least chance of a goal for a one-touch shot, 0 to 1.
 
     Raises:
         ValueError: ``slowest`` is not positive, ``widest`` is negative, or ``redirect_at`` is not 0 to 1.
@@ -57,7 +57,7 @@ class ReceivePass(Skill):
             raise ValueError(f"redirect_at must be 0 to 1, not {self.redirect_at}")
 
     def on_start(self) -> None:
-        """Begin without a decision."""
+        """Forget the last decision."""
         self._redirecting = False
         self._armed = 0.0
 
@@ -68,7 +68,7 @@ class ReceivePass(Skill):
         if speed < self.slowest and not has_ball(me, ball):
             return self.fail("the ball does not roll")
         if self._armed > 0.0 and 0.0 < frame.time - self._armed_at < tactics.bounced and has_ball(me, ball):
-            # It has bounced off before the kicker saw it: kick it now.
+            # The ball bounced off before the kicker saw it, so kick it now.
             store.command.kick_speed = self._armed
             store.command.kick_trigger = KickTrigger.ON_CONTACT
             return self.run("sending it on")
@@ -88,7 +88,8 @@ class ReceivePass(Skill):
         if planned is not None:
             x, y = planned
         elif aside < tactics.stays_within and ahead > 0.1:
-            # On the line already: here, unless an opponent would be there before.
+            # The robot is already on the line: it takes the ball here, unless an opponent would get it
+            # before.
             place = max(ahead - MOUTH, 0.0)
             time = frame.ball_model.time_for(place, speed, rolling)
             first = min(plan.their_times.values(), default=10.0)
@@ -125,7 +126,7 @@ class ReceivePass(Skill):
         return self.run("sending it on")
 
     def _planned(self, ux: float, uy: float, speed: float, rolling: float) -> Point | None:
-        """Return where on the ball's line a pass to this robot was to be received, if that is in time."""
+        """Return the planned point of reception on the ball's line, if the robot is still in time."""
         frame, team, ball = self.frame, self.store.team, self.ball
         target, tactics = team.pass_target, team.plan.tactics
         if team.receiver != self.me.id or target is None or not pass_under_way(frame, team):
@@ -142,7 +143,7 @@ class ReceivePass(Skill):
         return (x, y) if arrival_time(mover, x, y, 0.15) <= time + 0.1 else None
 
     def _redirect(self, x: float, y: float, time: float, speed: float, ux: float, uy: float) -> float | None:
-        """Return the heading from which the ball goes at the goal with one touch; None where it is taken."""
+        """Return the heading of a one-touch shot at the goal; None if the ball is to be taken."""
         store, frame = self.store, self.frame
         plan, tactics, field = store.team.plan, store.team.plan.tactics, frame.field
         angle = redirect_angle(x - ux, y - uy, x, y, field.half_length)

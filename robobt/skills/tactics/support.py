@@ -1,4 +1,4 @@
-"""Where supporters wait: where a pass arrives and is worth most, apart from each other."""
+"""Places for supporters: where a pass arrives and is worth most, apart from each other."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def support_places(frame: Frame, team: TeamStore, plan: Plan, count: int) -> lis
     origin = _origin(frame, team)
     arrives, worth = rate_points(points, *origin, 0.4, plan.their_movers, plan.numbers).T
     value = arrives * worth
-    # Where no pass gets to now it may in a moment.
+    # A place that no pass reaches now may be reached in a moment.
     value += 0.15 * worth
     value[len(grid) :] *= tactics.stay
     apart = tactics.apart
@@ -56,10 +56,10 @@ def support_places(frame: Frame, team: TeamStore, plan: Plan, count: int) -> lis
 
 
 def short_place(frame: Frame, last: Point | None, tactics: TacticsSettings) -> Point | None:
-    """Return the place beside the ball of an own restart that opponents are farthest from.
+    """Return the place beside the ball of an own restart that is farthest from opponents.
 
-    ``last`` is the one before. None without such a restart, and where no place is in the field and
-    outside the defence areas.
+    ``last`` is the last such place. None without such a restart, and if no place is in the field and outside
+    the defence areas.
     """
     field, game = frame.field, frame.game
     if game.restart not in (Restart.FREE_KICK, Restart.KICKOFF) or game.restart_team is not frame.team:
@@ -105,7 +105,7 @@ def _gaps(points: FloatArray, place: Point) -> FloatArray:
 
 
 def _origin(frame: Frame, team: TeamStore) -> Point:
-    """Return where the next pass will come from: the target of the one under way, else the ball."""
+    """Return the origin of the next pass: the target of the current pass, else the ball."""
     target = team.pass_target
     if (
         target is not None
@@ -120,7 +120,7 @@ def _origin(frame: Frame, team: TeamStore) -> Point:
 
 @lru_cache(maxsize=8)
 def support_grid(field: FieldGeometry, spacing: float, edge: float) -> FloatArray:
-    """Return the points that a supporter may stand at, (G, 2) [m]."""
+    """Return the points where a supporter may stand, (G, 2) [m]."""
     rows = int((field.half_length - edge) / spacing)
     columns = int((field.half_width - edge) / spacing)
     points = [

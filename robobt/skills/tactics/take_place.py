@@ -1,4 +1,4 @@
-"""Drive to the place that the team's plan gives this robot."""
+"""Drive to this robot's place in the team's plan."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from robobt.world.command import RobotCommand
 class TakePlace(Skill):
     """Drive to the place in the team's plan, facing the ball. FAILURE without one; never ends by itself.
 
-    With a policy it is a trained one that drives while the ball is in play, as in :class:`GoToPose`.
+    With ``policy`` a trained policy drives while the ball is in play, as in :class:`GoToPose`.
 
     Args:
         policy: name or file of a model for GoToBall that sees the robots in its way
@@ -34,7 +34,7 @@ class TakePlace(Skill):
         self._learned = LearnedWay(self.policy) if self.policy else None
 
     def on_start(self) -> None:
-        """Forget what was decided last."""
+        """Forget the last decision."""
         if self._learned is not None:
             self._learned.restart()
 

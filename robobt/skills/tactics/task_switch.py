@@ -17,14 +17,14 @@ from robobt.world.game import Restart
 
 
 class Part(StrEnum):
-    """What a field player has to do by the rules, or else by its team's plan."""
+    """The part of a field player, given by the rules or else by its team's plan."""
 
     HALT = "halt"
     """Stand still."""
     TAKE_PENALTY = "take_penalty"
     """Take the own penalty kick."""
     PENALTY = "penalty"
-    """Stay behind while somebody else takes a penalty kick."""
+    """Stay behind while another robot takes a penalty kick."""
     PLACE_BALL = "place_ball"
     """Bring the ball to the referee's spot."""
     TAKE_RESTART = "take_restart"
@@ -32,7 +32,7 @@ class Part(StrEnum):
     KICKOFF = "kickoff"
     """Line up for a kick-off that another robot takes."""
     DEAD_BALL = "dead_ball"
-    """Keep the distance, in any other pause."""
+    """Keep the distance from the ball, in any other pause."""
     ATTACK = "attack"
     RECEIVE = "receive"
     WALL = "wall"
@@ -43,17 +43,17 @@ class Part(StrEnum):
 class TaskSwitch(Switch, Bound[Store]):
     """Ticks the child for this robot's present :class:`Part`, and only that one.
 
-    What the referee wants comes first; in play it is the task that the team agreed on. The robot takes
-    part in the agreement from its first tick on.
+    The referee's commands come first; in play the part is the robot's task in the team's plan. The robot
+    takes part in the plan from its first tick.
 
     Args:
         cases: a child for each part by its name; one child may serve several parts.
         otherwise: the child for every other part.
-        without: what the team does without, for comparisons.
-        tactics: settings of the team's tactics. What one robot is given holds for its team.
+        without: parts of the tactics that are switched off, for comparisons.
+        tactics: settings of the team's tactics. Settings given to one robot apply to its whole team.
 
     Raises:
-        ValueError: a case does not name a part; the message lists those there are.
+        ValueError: a case does not name a part; the message lists all parts.
     """
 
     kind = Part

@@ -1,1 +1,1 @@
-"""Who does what, and where to wait for the ball."""
+"""Roles in the team, and places to wait for the ball."""

@@ -18,20 +18,18 @@ _WIDEST = radians(85.0)
 class BestFieldPosition(FieldSearch):
     """Write the best place in the opponent's half to shoot from to ``target``.
 
-    Near the goal and straight before it is good: twice the nearness (0 at a third
-    of the field's length from it, 1 in it) and once the straightness (0 at 85
-    degrees, 1 ahead), over three. From that goes ``travel`` a metre from the ball
-    and 10 where opponents standing together hide the goal. The opponent's defence
-    area is out of bounds.
+    Places near the goal and straight in front of it are good: the score is a third of twice the nearness (0
+    at a third of the field's length from the goal, 1 in it) plus the straightness (0 at 85 degrees, 1
+    straight ahead). ``travel`` per metre from the ball is subtracted, and 10 where opponents standing
+    together hide the goal. The opponent's defence area is excluded.
 
-    Source: RoboBulls' published code (AttackMain), whose field ends at the 3 m and
-    85 degrees that here only set the scale, and shadows the space before the
-    opponents too.
+    Source: RoboBulls' published code (AttackMain). There 3 m and 85 degrees bound the field, here they only
+    set the scale; and there the space in front of the opponents is shadowed too.
 
     Args:
         travel: cost of carrying the ball one metre.
-        spacing: of the points considered [m].
-        every: time from one look to the next [s]; in between the target stands.
+        spacing: distance between the points considered [m].
+        every: time between two searches [s]; in between the target is kept.
         keep: stay with the last target while it is at most this much worse than the best.
     """
 
@@ -41,7 +39,7 @@ class BestFieldPosition(FieldSearch):
     keep: float = 0.02
 
     def value(self, grid: PositionGrid) -> GridArray:
-        """Rate as the class describes."""
+        """Rate the points as the class describes."""
         value = static_value(grid, _WIDEST) - self.travel * grid.distance_from(self.ball.position)
         for rows, hidden in grid.goal_hidden(self.frame.opponents, extra=0.1):
             value[rows][hidden] -= 10.0
@@ -52,9 +50,9 @@ class BestFieldPosition(FieldSearch):
 def static_value(grid: PositionGrid, widest: float) -> GridArray:
     """Rate nearness to the goal and straightness before it, (X, Y), 1 at most; -inf in the defence area.
 
-    Made once for a grid and not to be written to.
+    The array is built once per grid and read-only.
 
-    ``widest`` is the angle off the straight way out of the goal that is worth nothing [rad].
+    ``widest`` is the angle off the goal's normal at which the straightness is 0 [rad].
     """
     nearness = 1.0 - grid.goal_distance / (grid.field.length / 3.0)
     straightness = 1.0 - grid.goal_angle / widest

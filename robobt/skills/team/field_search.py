@@ -17,12 +17,12 @@ from robobt.world.geometry import Point
 class FieldSearch(Skill):
     """Write the grid point with the largest :meth:`value` to ``target``.
 
-    SUCCESS, or FAILURE on a field with no point to go to. The target stands until
-    the next look, and after it while no other is clearly better.
+    SUCCESS, or FAILURE on a field without an allowed point. The target is kept until the next search, and
+    after it while no other point is clearly better.
 
     Args:
-        spacing: of the grid [m].
-        every: time from one look to the next [s].
+        spacing: distance between grid points [m].
+        every: time between two searches [s].
         keep: stay with the last target while it is at most this much worse than the best.
     """
 
@@ -41,10 +41,10 @@ class FieldSearch(Skill):
 
     @abstractmethod
     def value(self, grid: PositionGrid) -> GridArray:
-        """Return how good each point of ``grid`` is, (X, Y); -inf where nobody may go."""
+        """Return the value of each point of ``grid``, (X, Y); -inf where no robot may go."""
 
     def on_running(self) -> Status:
-        """Look again when it is time to."""
+        """Search again when ``every`` has passed."""
         if self._look.due(self.frame.time):
             self._target = self._search()
         self.store.target = self._target

@@ -18,9 +18,9 @@ class MateAimsAtMe(Condition):
     Source: RoboBulls' published code, AttackSupport, which waits 0.9 s.
 
     Args:
-        tolerance: angle between its heading and the way to this robot [rad].
-        nearest: closer than this it may as well aim elsewhere [m].
-        rise: how long it must have faced this robot [s].
+        tolerance: largest angle between its heading and the direction to this robot [rad].
+        nearest: least distance for a pass; a closer team-mate does not count as aiming [m].
+        rise: how long the team-mate must have faced this robot [s].
     """
 
     tolerance: float = radians(10.0)

@@ -12,10 +12,10 @@ _LEAVING = 0.3
 
 @skill
 class PassIsComing(Condition):
-    """SUCCESS from the kick of a pass to this robot until somebody has the ball or it comes no nearer.
+    """SUCCESS from the kick of a pass to this robot until a robot has the ball or it stops coming nearer.
 
     Args:
-        slowest: ball that still comes [m/s].
+        slowest: least ball speed that counts as coming [m/s].
         patience: longest time a pass takes [s].
     """
 
@@ -25,7 +25,7 @@ class PassIsComing(Condition):
     patience: float = 4.0
 
     def on_running(self) -> Status:
-        """Look after the ball."""
+        """Track the ball."""
         team, me, ball, frame = self.store.team, self.me, self.ball, self.frame
         age = frame.time - team.pass_time
         if team.receiver != me.id or not 0.0 <= age <= self.patience:

@@ -1,4 +1,4 @@
-"""A grid of points over the opponent's half, and what lies in whose shadow on it."""
+"""A grid of points over the opponent's half, and the shadows that opponents cast on it."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ EDGE_GAP = 0.2
 """Least distance of a grid point from the field's lines and the opponent's defence area [m]."""
 
 CLUSTER_GAP = 2.0 * ROBOT_RADIUS + 2.0 * BALL_RADIUS + 0.01
-"""Opponents with centres nearer than this let no ball through [m].
+"""Opponents with centres closer together than this let no ball through [m].
 
 Source: RoboBulls' published code, AttackMain.
 """
@@ -26,14 +26,14 @@ _STEEPEST = 1.55
 
 BoolArray = NDArray[np.bool_]
 GridArray = NDArray[np.float32]
-"""Single precision: half the time, and far finer than any grid."""
+"""Single precision takes half the time and is far finer than any grid."""
 
 
 HalfPlane = tuple[float, float, float]
 """(a, b, c): the points with a x + b y >= c."""
 
 Region = tuple[HalfPlane, HalfPlane, HalfPlane]
-"""Where three half planes overlap."""
+"""The overlap of three half planes."""
 
 
 class PositionGrid:
@@ -82,11 +82,11 @@ class PositionGrid:
         return distances
 
     def count_regions(self, regions: Sequence[Region]) -> NDArray[np.uint8]:
-        """Count for each point, (X, Y), in how many of the regions it lies."""
+        """Count for each point, (X, Y), how many of the regions contain it."""
         if not regions:
             return np.zeros(self.forbidden.shape, dtype=np.uint8)
         a, b, c = np.array(regions, dtype=np.float32).transpose(2, 1, 0)[..., None, None]
-        # Either side is one row or column, so that only the comparison fills the grid.
+        # Each side is one row or column, so that only the comparison fills the grid.
         inside = b * self.y >= c - a * self.x
         inside[0] &= inside[1]
         inside[0] &= inside[2]
@@ -101,9 +101,8 @@ class PositionGrid:
     def goal_hidden(self, opponents: Iterable[RobotState], extra: float) -> list[tuple[slice, BoolArray]]:
         """Find where opponents standing together hide both goal posts: rows, and a mask of them, each.
 
-        Hidden is what lies between the line from the left post past the leftmost of
-        them and the line from the right post past the rightmost, from them back to
-        where the lines meet.
+        The hidden region is between the line from the left post past the leftmost of them and the line from
+        the right post past the rightmost, from the robots back to where the lines meet.
 
         ``extra`` is added to the shadow of each of the opponents on either side [m].
         """
@@ -127,15 +126,15 @@ class PositionGrid:
 
 @lru_cache(maxsize=16)
 def position_grid(field: FieldGeometry, spacing: float) -> PositionGrid:
-    """Return the grid of a field, made once."""
+    """Return the grid of a field, cached."""
     return PositionGrid(field, spacing)
 
 
 def lane_shadow(origin: Point, robot: RobotState, radius: float) -> Region:
     """Return where a ball from ``origin`` would have to pass within ``radius`` [m] of ``robot``.
 
-    Only points farther than the robot count. A robot within ``radius`` shadows
-    the whole half plane behind it.
+    Only points farther away than the robot count. A robot within ``radius`` shadows the whole half plane
+    behind it.
     """
     x, y = origin
     dx, dy = robot.x - x, robot.y - y
@@ -154,7 +153,7 @@ def lane_shadow(origin: Point, robot: RobotState, radius: float) -> Region:
 
 
 def shot_path(field: FieldGeometry, origin: Point, room: float) -> Region:
-    """Return what lies between ``origin`` and the opponent's goal, up to ``room`` [m] beside either post."""
+    """Return the region between ``origin`` and the opponent's goal, up to ``room`` [m] beside either post."""
     x, y = origin
     reach = field.half_length - x
     half = field.goal_width / 2.0 + room
@@ -164,7 +163,7 @@ def shot_path(field: FieldGeometry, origin: Point, room: float) -> Region:
 
 
 def clusters(robots: Iterable[RobotState]) -> list[Sequence[RobotState]]:
-    """Group robots that let no ball through between them, from left (+y) to right; each group likewise."""
+    """Group robots that let no ball through between them, in order from left (+y) to right."""
     groups: list[list[RobotState]] = []
     for robot in sorted(robots, key=lambda robot: -robot.y):
         if groups and hypot(robot.x - groups[-1][-1].x, robot.y - groups[-1][-1].y) < CLUSTER_GAP:
@@ -175,7 +174,7 @@ def clusters(robots: Iterable[RobotState]) -> list[Sequence[RobotState]]:
 
 
 def _tangent(back: float, across: float, side: float) -> float:
-    """Return the slope of the line past a robot ``back`` from a post, ``across`` beside it, on one side."""
+    """Return the slope of the line past one side of a robot ``back`` behind and ``across`` beside a post."""
     gap = max(hypot(back, across), 1e-9)
     angle = atan2(across, back) + side * asin(min(1.0, ROBOT_RADIUS / gap))
     return tan(min(_STEEPEST, max(-_STEEPEST, angle)))

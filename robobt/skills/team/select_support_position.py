@@ -18,24 +18,24 @@ _WIDEST = radians(70.0)
 class SelectSupportPosition(FieldSearch):
     """Write the best place in the opponent's half to support the attack to ``target``.
 
-    A place is the better the fewer of these faults it has, and among equals the
-    nearer to the goal, straight before it, and to the robot:
+    The best place has the fewest of these faults; among equals it is near the goal, straight in front of it,
+    and near the robot:
 
     * opponents standing together hide the goal from it;
-    * an opponent stands in the lane from the ball to it;
-    * it lies between the ball and the goal, in the way of a shot;
-    * a team-mate is nearer than ``mate_distance``: a fault in part, the more the nearer.
+    * an opponent stands in the lane from the ball to the place;
+    * it is between the ball and the goal, in the way of a shot;
+    * a team-mate is nearer than ``mate_distance``: a partial fault that grows as the team-mate gets nearer.
 
-    The opponent's defence area is out of bounds. Source: RoboBulls' published code
-    (AttackSupport), where one fault is as bad as many.
+    The opponent's defence area is excluded. Source: RoboBulls' published code (AttackSupport), where one
+    fault is as bad as several.
 
     Args:
-        mate_distance: room to leave to every team-mate [m].
-        lane_clearance: an opponent nearer to the lane from the ball is in it [m].
-        shot_room: room to leave beside either post for a shot, narrowing towards the ball [m].
-        travel: cost of one metre from where the robot is.
-        spacing: of the points considered [m].
-        every: time from one look to the next [s]; in between the target stands.
+        mate_distance: distance to keep from every team-mate [m].
+        lane_clearance: an opponent closer to the lane from the ball than this blocks it [m].
+        shot_room: width to leave free beside either post for a shot, narrowing towards the ball [m].
+        travel: cost of one metre from the robot.
+        spacing: distance between the points considered [m].
+        every: time between two searches [s]; in between the target is kept.
         keep: stay with the last target while it is at most this much worse than the best.
     """
 
@@ -53,14 +53,14 @@ class SelectSupportPosition(FieldSearch):
             raise ValueError(f"mate_distance must be positive, not {self.mate_distance}")
 
     def value(self, grid: PositionGrid) -> GridArray:
-        """Rate as the class describes."""
+        """Rate the points as the class describes."""
         frame, me, ball = self.frame, self.me, self.ball.position
         value = static_value(grid, _WIDEST) - self.travel * grid.distance_from(me.position)
         regions = [lane_shadow(ball, opponent, self.lane_clearance) for opponent in frame.opponents]
         regions.append(shot_path(frame.field, ball, self.shot_room))
         faults = grid.count_regions(regions)
         for rows, hidden in grid.goal_hidden(frame.opponents, extra=0.1):
-            # Bytes, because adding truth values to floats costs several times as much.
+            # Bytes, because adding booleans to floats takes several times as long.
             faults[rows] += hidden.view(np.uint8)
         value -= faults
         room = self.mate_distance

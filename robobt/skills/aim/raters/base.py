@@ -21,20 +21,20 @@ Chances: TypeAlias = tuple[FloatArray, FloatArray]
 class ShotRater(Settings, ABC):
     """Judges shots at the opponent's goal.
 
-    A rater is a small read-only object whose fields are its settings; everything
-    it judges comes in with the call. Every rater keeps to this:
+    A rater is a small read-only object whose fields are its settings; everything it judges is passed in with
+    the call. Every rater obeys these rules:
 
-    * robots of both teams block, all but the shooter;
+    * robots of both teams block, except the shooter;
     * a robot behind the ball, seen from the goal, does not;
     * mirroring the scene in the x axis mirrors the shots;
-    * one robot more never raises the best score.
+    * an additional robot never raises the best score.
     """
 
     @abstractmethod
     def rate_all(self, frame: Frame, origin: Point, me: RobotState, *, delay: float = 0.0) -> list[Shot]:
-        """Return every distinct opening, the best first; empty without one.
+        """Return every distinct opening, the best first; an empty list without one.
 
-        Among equally good ones the first is that for which ``me`` has to turn least.
+        Among equally good openings, the one that needs the smallest turn of ``me`` comes first.
 
         Args:
             frame: the field, seen from the shooter's side.
@@ -74,7 +74,7 @@ Rater: TypeAlias = Annotated[str | Mapping[str, object] | ShotRater, BY_NAME]
 
 
 def make_rater(rater: Rater) -> ShotRater:
-    """Return the rater that a name or a mapping stands for; a rater already made is returned as it is.
+    """Return the rater for a name or a mapping; a rater object is returned unchanged.
 
     Raises:
         ValueError: no rater has that name, it has no such setting, or it refuses a value.
@@ -91,7 +91,7 @@ def best_first(shots: Iterable[Shot], origin: Point, heading: float) -> list[Sho
 
     def rank(shot: Shot) -> tuple[float, float, float]:
         turn = abs(wrap_angle(direction(origin, shot.target) - heading))
-        # Rounded, so that what differs by a rounding error counts as equal.
+        # Rounded, so that scores that differ by a rounding error count as equal.
         return (-round(shot.score, 9), round(turn, 9), -shot.target[1])
 
     return sorted(shots, key=rank)

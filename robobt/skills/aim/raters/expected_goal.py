@@ -20,14 +20,14 @@ from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS, Frame, RobotState
 class ExpectedGoal(LearnedRater):
     """The probability of a goal for every target point, from the state of everyone at once.
 
-    The predictor sees where all robots are and how they move, in one call for the
-    whole goal line. Its prediction is multiplied by the chance that a kick with a
-    small error stays between the posts; a point with a robot in its lane has none.
+    The predictor sees the positions and velocities of all robots, in one call for the whole goal line. Its
+    prediction is multiplied by the chance that a kick with a small error stays between the posts; a point
+    with a robot in its lane has probability 0.
 
     Every local maximum along the goal line is a shot with that probability as its
-    score; any aim within its tolerance has at least the probability ``threshold``, or
-    ``keep`` of the maximum where that does not reach the threshold. Robots behind the
-    shooter do not count, team-mates ahead of it count as opponents do.
+    score; any aim within its tolerance has at least the probability ``threshold``, or ``keep`` times the
+    maximum if the maximum is below the threshold. Robots behind the shooter are ignored; team-mates ahead of
+    it block as opponents do.
     """
 
     observation = SHOT_SCENE
@@ -38,7 +38,9 @@ class ExpectedGoal(LearnedRater):
         description="predictor of a shot's scene: a shipped model or a file",
     )
     threshold: float = Field(0.9, ge=0, le=1, description="probability that any aim within the tolerance has")
-    keep: float = Field(0.9, gt=0, le=1, description="share of the best probability that still counts as it")
+    keep: float = Field(
+        0.9, gt=0, le=1, description="the same where the maximum is below the threshold, as a share of it"
+    )
     kick_error: float = Field(0.01, gt=0, le=1, description="standard deviation of the direction [rad]")
     spacing: float = Field(0.01, ge=0.001, le=1, description="between target points [m]")
 
@@ -62,7 +64,7 @@ class ExpectedGoal(LearnedRater):
         for score, (right, left), (first, stop) in openings:
             middle = (float(y[first]) + float(y[stop - 1])) / 2.0
             aim = (float(aims[first]) + float(aims[stop - 1])) / 2.0
-            # To the nearer end: an aim that is off by the tolerance is still good on either side.
+            # Measured to the nearer end, so that an aim off by the tolerance is still good on either side.
             near = min(float(aims[left - 1]) - aim, aim - float(aims[right]))
             shots.append(Shot((frame.field.half_length, middle), near + half_step, score))
         return best_first(shots, origin, me.heading), (points, chances)
@@ -70,7 +72,7 @@ class ExpectedGoal(LearnedRater):
     def chances(self, frame: Frame, origin: Point, me: RobotState, points: FloatArray) -> FloatArray | None:
         """Compute the probability of a goal for every target point, None where no shot can enter the goal.
 
-        They are (T,); ``points`` (T, 2) lie on the opponent's goal line, from right to left [m].
+        The result is (T,); ``points`` (T, 2) are on the opponent's goal line, from right to left [m].
         """
         mouth = goal_mouth(frame.field, origin, BALL_RADIUS)
         if mouth is None:
@@ -91,10 +93,11 @@ class ExpectedGoal(LearnedRater):
     def _predicted(
         self, origin: Point, me: RobotState, points: FloatArray, ahead: list[RobotState]
     ) -> FloatArray:
-        """Predict for every target point, (T,); more robots than a scene holds are judged in groups.
+        """Predict the probability of every target point, (T,).
 
-        The shooter is taken to point at each target already, with the ball before it:
-        the predictor knows kicks, which go out when it does.
+        More robots than a scene holds are judged in groups. The shooter is assumed to point at each target
+        already with the ball in front of it, because the predictor was fitted to scenes at the moment of the
+        kick.
         """
         gap = distance(me.position, origin)
         shooter = np.full((len(points), ROBOT_SIZE), (me.x, me.y, 0.0, me.vx, me.vy, 0.0), dtype=np.float64)
@@ -117,10 +120,10 @@ class ExpectedGoal(LearnedRater):
 
 
 _HELD = 0.13
-"""A ball nearer to the robot's centre turns with it [m]."""
+"""A ball closer to the robot's centre than this turns with the robot [m]."""
 
 _SAME = 0.02
-"""Probabilities that differ by less are one summit."""
+"""Probabilities that differ by less than this count as one maximum."""
 
 
 Run = tuple[int, int]
@@ -128,10 +131,10 @@ Run = tuple[int, int]
 
 
 def _openings(level: FloatArray, threshold: float, keep: float) -> list[tuple[float, Run, Run]]:
-    """Score, region and summit of each opening along the goal line, the best first.
+    """Score, region and maximum of each opening along the goal line, the best first.
 
-    A region is what lies around a summit without a gap and reaches ``threshold``, or
-    ``keep`` of a summit that does not reach it itself.
+    A region is the unbroken stretch around a maximum that reaches ``threshold``, or ``keep`` times the
+    maximum if the maximum is below the threshold.
     """
     left = level.copy()
     found: list[tuple[float, Run, Run]] = []
@@ -144,7 +147,7 @@ def _openings(level: FloatArray, threshold: float, keep: float) -> list[tuple[fl
         lone = (begin == 0 or level[begin - 1] <= score) and (end == len(level) or level[end] <= score)
         if lone and not (found and _overlap(region, found)):
             found.append((score, region, best))
-        # Down the slopes on either side: they lead to this summit, not to one of their own.
+        # The slopes on either side lead up to this maximum and have none of their own.
         while begin > 0 and level[begin - 1] <= level[begin]:
             begin -= 1
         while end < len(level) and level[end] <= level[end - 1]:

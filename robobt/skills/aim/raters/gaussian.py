@@ -17,13 +17,12 @@ from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS, Frame, RobotState
 
 @RATERS.register("gaussian")
 class Gaussian(ShotRater):
-    """The chance that the kick's direction lies in the goal mouth, less what the robots stop.
+    """The chance that the kick's direction is inside the goal mouth, minus the share that robots stop.
 
-    The direction is normal around the aim. A robot stops a ball straight at it
-    surely and one beside it by a Gaussian of the angle between, as wide as
-    ``blocker_width`` looks from the ball. The integral of their product over the
-    mouth is closed. Robots stop the ball independently of each other's existence:
-    what they stop is summed, which underrates a shot at robots in one line.
+    The direction is normally distributed around the aim. A robot stops a ball aimed straight at it for
+    certain; beside it the chance falls as a Gaussian of the angle, as wide as ``blocker_width`` appears from
+    the ball. The integral of the product over the mouth has a closed form. The shares that robots stop are
+    summed, which underrates a shot at robots standing in one line.
 
     Every local maximum over the aim is a shot with that chance as its score and
     half the angle over which the chance keeps 90 % of it as its tolerance.

@@ -20,19 +20,19 @@ POST_GAP = BALL_RADIUS + 0.01
 """Least distance of a target point from a post [m]. Source: the paper's shot selection."""
 
 _MOST_POINTS = 100
-"""Points of a judged goal line that are kept."""
+"""Number of points kept of a judged goal line."""
 
 _NOTICED = 2
-"""A judged goal line is another one when a point differs by more than this [%]."""
+"""A judged goal line counts as changed when a point differs by more than this [%]."""
 
 
 def goal_candidates(field: FieldGeometry, spacing: float = 0.01) -> FloatArray:
     """Return target points on the opponent's goal line, from the right post (y < 0) to the left.
 
-    As many as fit between the posts less :data:`POST_GAP` on either side, 94 on a
-    goal of 1 m at the paper's 10 mm. The row is centred on the goal, so that it is
-    its own mirror image (the paper's starts at the right end instead, which puts
-    it up to half a spacing off centre). It is (T, 2) [m] and not to be written to.
+    The row has as many points as fit between the posts, leaving :data:`POST_GAP` free at either post: 94 for
+    a goal of 1 m at the paper's spacing of 10 mm. It is centred on the goal, so it is its own mirror image;
+    the paper's row starts at the right end, up to half a spacing off centre. The array is (T, 2) [m] and
+    read-only.
     """
     return _candidates(field.half_length, field.goal_width, spacing)
 
@@ -64,9 +64,8 @@ def lane_clearances(
 ) -> FloatArray:
     """Compute the distance of every obstacle from every straight lane origin -> target, (T, K) [m].
 
-    An obstacle whose nearest point on the lane would lie behind the origin is
-    not in the ball's way: its distance is infinite, unless ``behind`` is set:
-    then it is their distance from the origin.
+    An obstacle whose nearest point on the lane would be behind the origin is not in the ball's way, so its
+    distance is infinite; with ``behind`` it is the obstacle's distance from the origin.
 
     ``targets`` (T, 2) and ``centres`` (K, 2) are in metres; ``behind`` says whether obstacles behind the
     origin count.
@@ -122,12 +121,12 @@ def normal_cdf(values: FloatArray) -> FloatArray:
 
 @compiled
 def _normal_cdf(values: FloatArray) -> FloatArray:
-    # Not scipy's, which takes longer to import than all skills together.
+    # scipy's version is avoided: importing scipy takes longer than importing all skills.
     return np.array([0.5 * erfc(-value * sqrt(0.5)) for value in values])
 
 
 def judged_goal_line(points: FloatArray, chances: FloatArray, before: GoalLine | None = None) -> GoalLine:
-    """Return the goal line as judged, or ``before`` while it differs too little to be seen.
+    """Return the judged goal line, or ``before`` if it differs too little to be visible.
 
     ``points`` (T, 2) lie on the goal line, evenly from right to left [m]; ``chances`` (T,) are in [0, 1].
     """

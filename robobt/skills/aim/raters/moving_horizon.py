@@ -21,8 +21,8 @@ class MovingHorizon(ShotRater):
 
     A robot's horizon is ``travel_share`` of the ball's time to it and
     ``delay_share`` of the time until the kick, less its reaction time, between 0
-    and ``longest``. A robot already moving has reacted the more the faster it is.
-    The goalkeeper is a robot like any other.
+    and ``longest``. The faster a robot already moves, the less reaction time is subtracted.
+    The goalkeeper is treated like any other robot.
 
     Source: the idea and the constants of Sumatra's AngleRangeRater.
     """
@@ -32,10 +32,14 @@ class MovingHorizon(ShotRater):
     kick_speed: float = Field(6.5, gt=0, le=20, description="speed of the shot [m/s]")
     travel_share: float = Field(0.9, ge=0, le=2, description="share of the ball's travel time to use")
     delay_share: float = Field(0.1, ge=0, le=2, description="share of the time until the kick to use")
-    reaction: float = Field(0.12, ge=0, le=2, description="of a robot at rest [s]")
-    reacting_speed: float = Field(1.5, gt=0, le=20, description="from this speed on a robot needs none [m/s]")
-    longest: float = Field(2.0, ge=0, le=10, description="horizon at most [s]")
-    ball: BallModel | None = Field(None, description="how the ball travels; by default as the frame says")
+    reaction: float = Field(0.12, ge=0, le=2, description="reaction time of a robot at rest [s]")
+    reacting_speed: float = Field(
+        1.5, gt=0, le=20, description="speed from which a robot needs no reaction time [m/s]"
+    )
+    longest: float = Field(2.0, ge=0, le=10, description="longest horizon [s]")
+    ball: BallModel | None = Field(
+        None, description="how the ball travels; by default the frame's ball model"
+    )
 
     def rate_all(self, frame: Frame, origin: Point, me: RobotState, *, delay: float = 0.0) -> list[Shot]:
         """See :meth:`ShotRater.rate_all`."""
@@ -62,9 +66,9 @@ class MovingHorizon(ShotRater):
 
 
 def extent(speed: float, time: float, limits: RobotLimits) -> tuple[float, float]:
-    """Compute how far along its motion a robot can be at most and at least after ``time`` [m].
+    """Compute how far a robot can be at most and at least along its motion after ``time`` [m].
 
-    Full acceleration all the time, or full braking and then full acceleration back.
+    The most comes from full acceleration, the least from full braking and then full acceleration back.
     """
     acceleration = max(limits.acceleration, limits.lateral_acceleration)
     braking = max(limits.braking, limits.lateral_braking)

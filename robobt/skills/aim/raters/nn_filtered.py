@@ -1,4 +1,4 @@
-"""The paper's rater with a learned filter: clear target points that the network lets pass."""
+"""The paper's rater with a learned filter: a network removes some of the clear target points."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ from robobt.world.state import Frame, RobotState
 
 @RATERS.register("nn_filtered")
 class NNFiltered(LearnedRater):
-    """A clear target point is good when the predictor gives it a chance past each robot by itself.
+    """A clear target point is good if the predictor gives the shot a chance past each robot on its own.
 
     As :class:`~robobt.skills.aim.raters.SegmentClearance`, but robots behind the ball are
     left out, and a point counts only when for every robot the predicted chance is at
-    least ``threshold``; a robot that is behind the shooter is not asked about. All
-    points and robots go through the network in one call.
+    least ``threshold``; robots behind the shooter are left out. All points and robots go through the network
+    in one call.
 
     Source: "Machine Learning Approaches for Attacking Behaviors in Robot Soccer",
     AttackNN, with its tolerance and threshold.
@@ -34,8 +34,10 @@ class NNFiltered(LearnedRater):
         validate_default=True,
         description="predictor of the features of Eq. 4: a shipped model or a file",
     )
-    threshold: float = Field(0.5, ge=0, le=1, description="least chance that a robot has to leave")
-    tolerance: float = Field(0.3645, ge=0, le=5, description="a robot nearer to the lane blocks it [m]")
+    threshold: float = Field(0.5, ge=0, le=1, description="least predicted chance past every robot")
+    tolerance: float = Field(
+        0.3645, ge=0, le=5, description="a robot closer to the lane than this blocks it [m]"
+    )
     spacing: float = Field(0.01, ge=0.001, le=1, description="between target points [m]")
 
     def judge(
@@ -58,7 +60,7 @@ class NNFiltered(LearnedRater):
         return shots_at_groups(points, good, self.spacing, origin, me.heading), (points, chances)
 
     def chances(self, frame: Frame, me: RobotState, points: FloatArray) -> FloatArray:
-        """Compute the least chance that any robot leaves each of (T, 2) target points, (T,).
+        """Compute the lowest chance past any robot for each of (T, 2) target points, (T,).
 
         It is 1 where nobody is ahead of the shooter.
         """

@@ -1,4 +1,4 @@
-"""The goal mouth as an interval of directions, and what robots take away from it."""
+"""The goal mouth as an interval of directions, minus the directions that robots hide."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ def disc_shadow(field: FieldGeometry, origin: Point, centre: Point, radius: floa
 
 
 def free_intervals(mouth: Interval, shadows: list[Interval]) -> list[Interval]:
-    """Return what the shadows leave of the mouth, in order."""
+    """Return the intervals of the mouth that no shadow covers, in order."""
     low, high = mouth
     free = []
     for start, end in sorted(shadows):
@@ -68,12 +68,12 @@ def opening_shots(
     discs: Iterable[tuple[Point, float]],
     full_angle: float,
 ) -> list[Shot]:
-    """Return a shot along the bisector of each opening that discs leave of the goal, best first.
+    """Return a shot along the bisector of each opening between the discs, the best first.
 
     The score is the opening's width as a share of ``full_angle``, at most 1.
 
-    ``inset`` is what either post takes off the goal [m], ``discs`` have the centre and radius of everything
-    in the way [m], and an opening of ``full_angle`` scores 1 [rad].
+    ``inset`` is the width taken off the goal at either post [m], ``discs`` are the centre and radius of
+    everything in the way [m], and an opening of ``full_angle`` [rad] scores 1.
     """
     mouth = goal_mouth(field, origin, inset)
     if mouth is None:

@@ -24,14 +24,16 @@ class SegmentClearance(ShotRater):
     the largest the best. The score is the group's share of all target points, the
     shot's tolerance half the angle the group spans.
 
-    Robots are taken as they stand: neither their motion nor the kick's error counts.
+    Robots count as standing still, and the kick's error is ignored.
 
     Source: "Machine Learning Approaches for Attacking Behaviors in Robot Soccer",
     shot selection. The paper's tolerances in metres: 0.1965 in the original
     behaviour, 0.243, 0.3645 and 0.486 while its data was collected.
     """
 
-    tolerance: float = Field(0.1965, ge=0, le=5, description="a robot nearer to the lane blocks it [m]")
+    tolerance: float = Field(
+        0.1965, ge=0, le=5, description="a robot closer to the lane than this blocks it [m]"
+    )
     spacing: float = Field(0.01, ge=0.001, le=1, description="between target points [m]")
 
     def rate_all(self, frame: Frame, origin: Point, me: RobotState, *, delay: float = 0.0) -> list[Shot]:  # noqa: ARG002

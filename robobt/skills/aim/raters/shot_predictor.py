@@ -1,4 +1,4 @@
-"""The predictor that a learned rater asks."""
+"""The shot predictor that learned raters use."""
 
 from __future__ import annotations
 
@@ -22,7 +22,8 @@ if TYPE_CHECKING:
 
 
 _wanted: dict[tuple[str, ObservationSpec], None] = {}
-"""What raters were made for; with their models loaded only when first asked, most processes need no torch."""
+"""Models of the raters built so far. Each is loaded at its first prediction, so most processes need no
+torch."""
 
 _sound: set[str] = set()
 """Checksums of files whose network's source has been checked."""
@@ -37,20 +38,21 @@ def shot_predictor(model: str, observation: ObservationSpec) -> Policy:
 
 
 def load_shot_predictors() -> None:
-    """Load what the raters made so far will ask, as before a match in real time: that may take seconds."""
+    """Load the predictors of all raters built so far, before a match in real time; this may take seconds."""
     for model, observation in _wanted:
-        # What is wrong with one is said where it is asked.
+        # An error in a model is reported where the model is used.
         with suppress(ModelError):
             shot_predictor(model, observation)
 
 
 def check_shot_predictor(model: str, observation: ObservationSpec) -> None:
-    """Refuse a shot predictor that cannot be used, as far as can be told without importing torch.
+    """Refuse an unusable shot predictor, as far as can be checked without importing torch.
 
-    A tree is built several times before a match, so what was checked is not checked again.
+    A tree is built several times before a match, so each file is checked only once.
 
     Raises:
-        ModelError: it is missing, cut, foreign or made for something else; the message names the file.
+        ModelError: the file is missing, truncated, not a robobt model, or made for another purpose; the
+        message names it.
     """
     _wanted[model, observation] = None
     file = read_fitting_model(model, kind="shot_predictor", observation=observation)
@@ -63,7 +65,7 @@ def check_shot_predictor(model: str, observation: ObservationSpec) -> None:
 
 
 class LearnedRater(ShotRater):
-    """A rater that asks a shot predictor, ``model``, about what it observes of a scene."""
+    """A rater that feeds its observation of a scene to a shot predictor, ``model``."""
 
     observation: ClassVar[ObservationSpec]
 
