@@ -1,4 +1,4 @@
-"""What is recorded and shown of a match: one capture of it, and the file it is written to."""
+"""The capture of a match for recording and display, and the file it is written to."""
 
 from __future__ import annotations
 
@@ -26,16 +26,16 @@ _ENDING = ".robobt.arrows"
 
 
 class MatchCapture:
-    """Captures a match from when somebody asks for it, at once where it is recorded.
+    """Captures a match from the first request on, or from the start if the match is recorded.
 
     Args:
-        scenario: what is played.
-        trial: which repetition.
-        seed: the trial's.
-        world: where it is played.
+        scenario: the scenario that is played.
+        trial: number of the trial.
+        seed: seed of the trial.
+        world: the world of the match.
         players: the robots.
-        record: file to record it to, None for none.
-        layers: what skills draw in these is recorded.
+        record: file to record to, or None.
+        layers: drawing layers of skills to record.
 
     Raises:
         OSError: the recording cannot be written.
@@ -61,16 +61,16 @@ class MatchCapture:
             self.get()
 
     def get(self) -> Capture:
-        """Return what captures every tick from now on."""
+        """Return the capture, which takes every tick from now on."""
         if self._capture is None:
             self._capture = self._begin()
         return self._capture
 
     def change_tree(self, before: TreeRunner, player: Player, play: str) -> None:
-        """Capture the other tree that a robot has now.
+        """Capture a robot's new tree.
 
-        A tree of other nodes begins another capture, and where the match is recorded another
-        file: ``match-2`` after ``match``.
+        A tree with other nodes starts a new capture and, if the match is recorded, a new file: ``match-2``
+        after ``match``.
         """
         self._plays[player.robot] = play
         if self._capture is not None and not self._capture.change_tree(before, player.runner):
@@ -86,7 +86,7 @@ class MatchCapture:
         kicked: Iterable[RobotId],
         outcome: Outcome | None,
     ) -> None:
-        """Capture one tick: who kicked at it, and how the match ended where nobody referees."""
+        """Capture one tick with its kicks and, in a match without a referee, its outcome."""
         if self._capture is None:
             return
         with uninterrupted:
@@ -96,7 +96,7 @@ class MatchCapture:
                 kind, team = _END_EVENTS[outcome]
                 self._capture.event(kind, truth.time, team=team)
             self._world.draw(self._capture.field)
-            # What a world shows that may differ from the truth is compared when it is written.
+            # Observations that may differ from the truth are compared with it when they are written.
             self._capture.tick(truth, commands, None if self._shows_truth else observed, packed)
 
     def note(self, event: ReportedEvent) -> None:

@@ -13,7 +13,7 @@ from robobt.world.rules import ALL_AROUND, ball_out, has_ball, scorer
 from robobt.world.state import BallState, Frame, RobotId
 
 _REST_SPEED = 0.05
-"""A ball slower than this lies still [m/s]."""
+"""A ball slower than this is at rest [m/s]."""
 
 
 class Outcome(StrEnum):
@@ -25,7 +25,7 @@ class Outcome(StrEnum):
     """A goalkeeper has the ball or has kicked it."""
     OUT = "out"
     REST = "rest"
-    """The ball lies still after a kick."""
+    """The ball is at rest after a kick."""
     TIME = "time"
     SCORE = "score"
     """A team has reached the score limit."""
@@ -37,14 +37,14 @@ class Outcome(StrEnum):
 
 
 class EndJudge:
-    """Watches a scenario's end conditions; frames are true and seen from blue's side.
+    """Checks a scenario's end conditions, on true frames seen from blue's side.
 
-    Where there is no referee it is also who counts goals.
+    Without a referee it also counts the goals.
 
     Args:
-        scenario: whose end conditions they are.
-        refereed: whether a referee or game controller decides; the score is then its own.
-        hold: whether the end conditions hold at all; without them a match ends when the referee says.
+        scenario: the scenario with the end conditions.
+        refereed: whether a referee or game controller decides and keeps the score.
+        hold: whether the end conditions apply; without them only the referee ends a match.
 
     Attributes:
         scores: goals of each team.
@@ -59,7 +59,7 @@ class EndJudge:
         self._goal_ends = free if ends.goal is None else ends.goal
         self._out_ends = free if ends.ball_out is None else ends.ball_out
         self._keepers = {RobotId(team, number) for team, number in scenario.goalkeepers().items()}
-        # Half a period early, as frames of a world of its own pace are not on the tick.
+        # Half a period early, because frames of a world that runs at its own pace are not aligned with ticks.
         self._last = (ceil(ends.time_limit / scenario.period - 1e-9) - 0.5) * scenario.period
         self._ball_before: BallState | None = None
         self._was_out = False
@@ -70,9 +70,9 @@ class EndJudge:
     def judge(
         self, truth: Frame, game: GameState, kicks: int, kicked: Sequence[RobotId] = ()
     ) -> Outcome | None:
-        """Decide whether the match is over at this frame; None while it is not.
+        """Return the outcome if the match is over at this frame, else None.
 
-        ``kicks`` is how often the ball has been kicked so far, ``kicked`` who did so since the frame before.
+        ``kicks`` counts the kicks so far, ``kicked`` has the robots that kicked since the last frame.
         """
         goal_by = self._goal_by(truth, game)
         if not self._hold:
@@ -100,7 +100,7 @@ class EndJudge:
         return Outcome.TIME if truth.time >= self._last else None
 
     def _placed(self, game: GameState) -> Outcome | None:
-        """Return how a ball placement ended at this frame; None where none did."""
+        """Return how a ball placement ended at this frame, or None if none ended."""
         placing = game.restart_team if game.restart is Restart.BALL_PLACEMENT else None
         before, self._placing = self._placing, placing
         if before is None or placing is before:
@@ -108,7 +108,7 @@ class EndJudge:
         return Outcome.PLACED if EventKind.PLACEMENT_SUCCEEDED in game.events else Outcome.NOT_PLACED
 
     def _goal_by(self, truth: Frame, game: GameState) -> Team | None:
-        """Return who has scored since the frame before."""
+        """Return the team that has scored since the last frame."""
         before = self._ball_before or truth.ball
         self._ball_before = truth.ball
         self._was_out = ball_out(truth.field, truth.ball.position)

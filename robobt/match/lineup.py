@@ -1,4 +1,4 @@
-"""Who plays as what: the goalkeeper's number and how many robots, as the game controller says."""
+"""The line-up: the goalkeeper's number and the number of robots, as the game controller says."""
 
 from __future__ import annotations
 
@@ -16,23 +16,23 @@ from robobt.world.state import ROBOT_RADIUS, Frame, RobotState
 _log = logging.getLogger(__name__)
 
 _ASIDE = 0.3
-"""How far from one another robots stand that have left [m]."""
+"""Distance between robots that have left the field [m]."""
 
 _BEHIND_WALL = 0.3
-"""How far behind the wall a robot lies that was taken off [m]."""
+"""Distance behind the wall of a robot that was taken off [m]."""
 
 _ROOM = 2.0 * ROBOT_RADIUS + 0.05
-"""From other robots to where one is put back [m]."""
+"""Least distance from other robots for a robot that is put back [m]."""
 
 
 class Lineup:
     """One team's robots, each with the tree that moves it.
 
-    ``players`` has the robots with the trees that the scenario gives them; ``keeper`` is the number of its
-    goalkeeper, None without one.
+    ``players`` are the robots with their trees from the scenario; ``keeper`` is the goalkeeper's number, None
+    without one.
 
     Attributes:
-        players: who moves the robot of each number now.
+        players: the player that moves each robot now, by the robot's number.
     """
 
     def __init__(self, players: Sequence[Player], keeper: int | None) -> None:
@@ -43,10 +43,10 @@ class Lineup:
         self._away: frozenset[int] = frozenset()
 
     def follow(self, view: Frame) -> frozenset[int]:
-        """Do what the game controller says of this team; return the numbers of robots that have to leave.
+        """Apply the game controller's data on this team; return the numbers of robots that have to leave.
 
-        The robot that it names as the goalkeeper exchanges trees with the one that was. Of too
-        many robots those with the highest numbers leave, the goalkeeper last.
+        The robot that it names as the goalkeeper exchanges trees with the previous goalkeeper. If there are
+        too many robots, those with the highest numbers leave, the goalkeeper last.
         """
         status = view.game.status(view.team)
         if status.keeper is not None and status.keeper != self._keeper and self._keeper is not None:
@@ -63,14 +63,14 @@ class Lineup:
 
     @property
     def complete(self) -> bool:
-        """Whether all robots play: none has to leave, and none is away."""
+        """Whether all robots play: none has to leave and none is off the field."""
         return not self._leaving and not self._away
 
     def carried(self, view: Frame) -> Iterator[tuple[int, Point]]:
-        """Find the robots that their handlers carry now, and where to, as their team sees it.
+        """Return the robots that handlers move now, and their new places in their team's view.
 
-        One that has to leave is taken behind the wall from where it left the field; one that may play
-        again is put back there, once there is room.
+        A robot that has to leave is taken behind the wall where it left the field. A robot that may play
+        again is put back there once there is room.
         """
         field = view.field
         wall, margin = field.outer[1], (field.half_width + field.outer[1]) / 2
@@ -101,7 +101,7 @@ class Lineup:
         self._forget_roles()
 
     def _forget_roles(self) -> None:
-        """Let the trees agree anew on who goes for the ball; robots enter themselves as they are asked."""
+        """Let the trees choose again who goes for the ball; robots register when they are ticked."""
         team = next(iter(self.players.values())).store.team
         team.attackers.clear()
         team.marks.clear()
@@ -110,9 +110,9 @@ class Lineup:
 
 
 def leave(view: Frame, me: RobotState, leaving: Collection[int]) -> RobotCommand:
-    """Drive off the field over the nearer touch line, beside the half-way line in the own half.
+    """Drive off the field over the nearer touch line, next to the half-way line in the own half.
 
-    ``leaving`` are the numbers of all robots that leave; those on one side stand in order of their numbers.
+    ``leaving`` has the numbers of all robots that leave; on each side they stand in order of their numbers.
     """
     field = view.field
     before = [

@@ -41,28 +41,28 @@ _log = logging.getLogger(__name__)
 _MAY_READ = "a skill may only read the frame, and acts through self.store.command"
 
 WorldFactory = Callable[[Scenario], World]
-"""Makes the world a scenario is played in. Raises ``ScenarioError`` when the scenario does not fit it."""
+"""Makes the world of a match. Raises ``ScenarioError`` if the scenario does not fit the world."""
 
 
 class MatchLoop(Closing):
     """A match in a world that is given, played tick by tick.
 
     Args:
-        scenario: what is played.
-        seed: fixes placement and world; the same seed gives the same match, bit for bit.
+        scenario: the scenario to play.
+        seed: seed of the placement and the world; the same seed gives the same match, bit for bit.
         world_factory: makes the world.
         record: file to record the match to; its name ends in ``.robobt.arrows``.
-        trial: which repetition this is; only written down.
+        trial: number of the trial, which is only recorded.
         referee: makes the referee; by default the scenario's own. It is closed with the match.
-        layers: what skills draw in these is recorded as well.
+        layers: drawing layers of skills to record.
 
     Attributes:
-        world: where it is played.
-        players: the robots in the order of teams and scenario.
-        measures: figures so far.
-        game: the state of the game as of the last frame.
-        referee: who decides it, None where nobody here does.
-        outcome: how it ended, None while it is being played.
+        world: the world of the match.
+        players: the robots, in the scenario's order, blue first.
+        measures: the figures so far.
+        game: the state of the game at the last frame.
+        referee: the referee, or None if there is none or it runs elsewhere.
+        outcome: how the match ended, None while it is played.
 
     Raises:
         ScenarioError: the scenario does not fit the world, or its objects find no place.
@@ -91,7 +91,7 @@ class MatchLoop(Closing):
         placement_seed, world_seed = np.random.SeedSequence(seed).spawn(2)
         placement = scenario.place(np.random.default_rng(placement_seed))
         if self.world.paced:
-            # A field goes on meanwhile.
+            # A real field does not wait for this process.
             self.be_ready()
         self.world.reset(placement, int(world_seed.generate_state(1)[0]))
         self.players = make_players(scenario, self.world.observe())
@@ -113,7 +113,7 @@ class MatchLoop(Closing):
         self._commands: dict[RobotId, RobotCommand] = {}
         self._spoilers: set[tuple[RobotId, str]] = set()
         self._time = 0.0
-        # A recording may go on in another file later, whatever the working folder is then.
+        # A recording may continue in another file later, when the working folder may have changed.
         path = None if record is None else Path(record).absolute()
         try:
             self._captured = MatchCapture(scenario, trial, seed, self.world, self.players, path, layers)
@@ -137,16 +137,16 @@ class MatchLoop(Closing):
             return self.result(perf_counter() - started - compiling())
 
     def be_ready(self) -> None:
-        """Load now what else is loaded when it is first needed, while a match in real time would go on."""
+        """Load everything that is otherwise loaded at first use, which would delay a match in real time."""
         load_shot_predictors()
         load_shipped_policies()
 
     def capture(self) -> Capture:
-        """Return what takes hold of every tick from now on, for recorders and viewers."""
+        """Return the capture of every tick from now on, for recorders and viewers."""
         return self._captured.get()
 
     def change_tree(self, player: Player, tree: Behaviour, play: str) -> None:
-        """Let the robot of ``player`` play another tree from now on; ``play`` is what that is called."""
+        """Let the robot of ``player`` play another tree from now on; ``play`` is the tree's name."""
         before = player.runner
         player.runner = run_tree(player.robot, tree, player.store, before.on_error, player.names)
         before.stop()
@@ -154,7 +154,7 @@ class MatchLoop(Closing):
         self._captured.change_tree(before, player, play)
 
     def close(self) -> None:
-        """Let go of the referee, finish the recording and shut the trees down; or use it in ``with``."""
+        """Close the referee, finish the recording and shut the trees down; ``with`` does it too."""
         let_go()
         if self.referee is not None:
             self.referee.close()
@@ -164,7 +164,7 @@ class MatchLoop(Closing):
         shut_down(self.players)
 
     def tick(self) -> bool:
-        """Play one control period; return False when the match is over, in which case nobody has acted.
+        """Play one control period; return False if the match is over, in which case no robot has acted.
 
         Raises:
             TreeError: a tree raised, and the scenario's ``on_error`` is "raise"; robot and node are named.
@@ -188,7 +188,7 @@ class MatchLoop(Closing):
         self.outcome = self._judge.judge(truth, self.game, self.measures.kicks, self.measures.kicked)
         frame = truth
         if self.outcome is None:
-            # Not the true frame, from before the referee may have placed the ball.
+            # Take a new frame: the true frame is from before the referee may have placed the ball.
             frame = self.world.observe()
             frame.game = self.game
             self._commands = self.decide(frame)
@@ -204,7 +204,7 @@ class MatchLoop(Closing):
         return True
 
     def result(self, wall_time: float = 0.0) -> MatchResult:
-        """Return the figures so far, after ``wall_time`` [s]; a match that is not over ran out of time."""
+        """Return the figures so far, after ``wall_time`` [s]; an unfinished match counts as out of time."""
         outcome = Outcome.TIME if self.outcome is None else self.outcome
         measures = self.measures
         return MatchResult(
@@ -227,22 +227,22 @@ class MatchLoop(Closing):
         )
 
     def decide(self, frame: Frame) -> dict[RobotId, RobotCommand]:
-        """Tick every tree once on this frame and return each robot's command, the world left alone.
+        """Tick every tree once on this frame and return each robot's command, without changing the world.
 
         A robot that is not seen is not ticked and stands still.
         """
         commands: dict[RobotId, RobotCommand] = {}
         process = OwnProcess()
         halted = frame.game.halted
-        # Both views before any tree is ticked, for they may share the frame's objects.
+        # Make both views before any tree is ticked, because they may share the frame's objects.
         views = [(team, frame.seen_by(team)) for team, lineup in self._lineups.items() if lineup.players]
         for team, everybody in views:
             lineup, kept = self._lineups[team], self._kept[team]
-            # A robot that has left is not there for the trees; it is still driven.
+            # Trees do not see a robot that has left the field, but it is still driven.
             view = without_absent(everybody, everybody.game)
             kept.take(view)
             leaving = lineup.follow(everybody)
-            # It may have interrupted skills, which can change what they saw before and this view has as well.
+            # The tick may have interrupted skills, which can change objects that this view shares.
             kept.mend()
             for me in everybody.own if leaving else ():
                 if me.id in leaving:
@@ -265,19 +265,19 @@ class MatchLoop(Closing):
                     command = RobotCommand()
                 commands[player.robot] = command
         if halted:
-            # Whatever the trees make of it: not every play asks the referee.
+            # Robots stop whatever their trees say, because not every play checks the referee.
             return {robot: RobotCommand() for robot in commands}
         return commands
 
     def _complain(self, robot: RobotId, changed: str, field: str, advice: str) -> None:
-        """Warn once for each robot that a skill changed what it may not change."""
+        """Warn once per robot that a skill changed something read-only."""
         if (robot, changed) not in self._spoilers:
             self._spoilers.add((robot, changed))
             said = f"a skill of its tree changed {changed}{field}, which was restored; {advice}"
             _log.warning("%s: %s", robot, said)
 
     def _carry(self, frame: Frame) -> None:
-        """Do what handlers do with robots that have left the field or come back."""
+        """Move robots that have left the field or come back, as their handlers would."""
         for team, lineup in self._lineups.items():
             if lineup.complete:
                 continue

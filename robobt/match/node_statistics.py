@@ -1,4 +1,4 @@
-"""Counts of what the nodes of a play do in a match."""
+"""Counts of ticks and statuses of a play's nodes in a match."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ from robobt.world.state import RobotId
 def node_statistics(
     scenario: Scenario, world_factory: WorldFactory, play: str | None = None, seed: int | None = None
 ) -> dict[RobotId, NodeStatistics]:
-    """Play a scenario's first trial and count what the nodes of its robots' trees do.
+    """Play a scenario's first trial and count the ticks and statuses of its robots' nodes.
 
     Args:
         scenario: the scenario to play.
         world_factory: makes the world.
-        play: count for robots with this play only; a file may be named by another path. None for all robots.
+        play: count only robots with this play, whose file may be given by another path; None for all robots.
         seed: seed of the run; the scenario's by default.
 
     Raises:

@@ -25,8 +25,8 @@ _log = logging.getLogger(__name__)
 class Player:
     """One robot on the field.
 
-    Skills share ``store``; ``names`` come first where they look something up; ``problem`` is why its tree
-    failed at the last tick that it did: the node's path and what happened. Where a person drives it,
+    Skills share ``store`` and look things up in ``names`` first. ``problem`` is the last failure of the tree:
+    the node's path and what happened. If a person drives the robot, ``driver`` decides instead of the tree,
     ``driver`` says what to do in place of the tree, which rests. ``failing`` is why its tree failed at every
     tick so far, the path of the node and its reason; None once it did anything else, or for another reason.
     """
@@ -102,7 +102,7 @@ def make_players(scenario: Scenario, start: Frame) -> list[Player]:
 def run_tree(
     robot: RobotId, tree: Behaviour, store: Store, on_error: Literal["stop", "raise"], names: Namespace | None
 ) -> TreeRunner:
-    """Set up a robot's tree, which looks things up in ``names`` first, and return what runs it."""
+    """Set up a robot's tree, which looks things up in ``names`` first, and return its runner."""
     with within(names), users_code(str(robot)):
         return TreeRunner(tree, store, on_error)
 
@@ -115,7 +115,7 @@ def shut_down(players: Iterable[Player]) -> None:
 
 
 def _fault_of(command: object) -> str | None:
-    """Return why a robot cannot be sent what its tree decided, None when it can."""
+    """Return why a tree's command cannot be sent to its robot, or None if it can."""
     try:
         if not isinstance(command, RobotCommand):
             return f"command is no RobotCommand: {short_repr(command)}"

@@ -1,4 +1,4 @@
-"""Who referees a match: the interface of a referee, and the one that a scenario asks for."""
+"""The interface of a referee, and the referee that a scenario asks for."""
 
 from __future__ import annotations
 
@@ -14,20 +14,20 @@ from robobt.world.state import Frame
 
 
 class MatchReferee(Protocol):
-    """Watches a match and decides its state."""
+    """Referees a match: decides the state of the game."""
 
     def update(self, frame: Frame) -> Decision:
-        """Judge the next frame, which shows what really is on the field, from blue's side."""
+        """Judge the next frame, the true one seen from blue's side."""
 
     def close(self) -> None:
-        """Let go of what it holds: the match is over."""
+        """Release its resources when the match is over."""
 
 
 RefereeFactory = Callable[[Scenario, FieldGeometry], MatchReferee | None]
 """Makes the referee of a match, None for free play.
 
-For workers it is a function of a module or another object that can be pickled. One that is not
-:func:`own_referee` has a ``name``, by which files of results are told apart.
+For workers it must be picklable, such as a function of a module. Any other than :func:`own_referee` has a
+``name``, by which result files are distinguished.
 """
 
 
@@ -37,6 +37,6 @@ def own_referee(scenario: Scenario, field: FieldGeometry) -> Referee | None:
 
 
 def referee_settings(scenario: Scenario) -> RefereeSettings:
-    """Return the scenario's settings, with its goalkeepers; the defaults where it has no referee."""
+    """Return the scenario's settings, with its goalkeepers; the defaults if it has no referee."""
     keepers = {f"{team.value}_keeper": number for team, number in scenario.goalkeepers().items()}
     return (scenario.referee or RefereeSettings()).model_copy(update=keepers)

@@ -1,12 +1,12 @@
-"""A recorded tick as a regression case: what one robot's tree did then, and whether it still does so.
+"""A recorded tick as a regression case: it checks that one robot's tree still does the same.
 
-Trees remember: places in sequences, timers, the last shot. None of that can be put back
-from outside, so a case holds the match up to the tick. All trees of the scenario are built
-anew from the files and skills of the day, given the same seeds and ticked on every recorded
-frame; the robot's tree is compared at the last one. Nothing random is left.
+Trees have state: places in sequences, timers, the last shot. It cannot be restored from outside, so a case
+holds the match up to the tick. All trees of the scenario are built again from the current files and skills,
+with the same seeds, and ticked on every recorded frame; the robot's tree is compared at the last frame.
+Nothing random is left.
 
-Recorded frames are rounded. A tree on the edge of a decision may do something else on them
-than in the match; such a tick is refused when the case is saved.
+Recorded frames are rounded. A tree close to a threshold may decide differently on them than in the match;
+such a tick is refused when the case is saved.
 
 In a test::
 
@@ -47,17 +47,17 @@ from robobt.world.protocol import Placement, World
 from robobt.world.state import Frame, RobotId
 
 TOLERANCE = 1e-6
-"""By how much a command may differ [m/s, rad/s]: what another processor's arithmetic may do."""
+"""Tolerance of a command's numbers [m/s, rad/s], for differences in arithmetic between processors."""
 
 _STATUSES = {"S": "SUCCESS", "F": "FAILURE", "R": "RUNNING"}
 
 
 class RegressionCaseError(RobobtError, ValueError):
-    """A file is no regression case, or a tick cannot be made one."""
+    """A file is no regression case, or a tick cannot be saved as one."""
 
 
 class RegressionError(RobobtError, AssertionError):
-    """The tree does something else now; the message says what."""
+    """The tree now decides differently; the message says how."""
 
 
 class _CaseFile(BaseModel):
@@ -68,20 +68,20 @@ class _CaseFile(BaseModel):
     robot: str = Field(pattern=r"^(blue|yellow) \d{1,4}$")
     tick: int = Field(ge=0)
     time: float = Field(description="[s]")
-    statuses: dict[str, str] = Field(description="by the ids of the nodes that had one")
-    command: dict[str, bool | float | str] = Field(description="what the tree decided")
-    seen: JsonValue = Field(None, description="what the tree saw, for people")
+    statuses: dict[str, str] = Field(description="statuses, by the ids of the nodes that had one")
+    command: dict[str, bool | float | str] = Field(description="the tree's command")
+    seen: JsonValue = Field(None, description="the tree's view, for human readers")
     match: str = Field(description="the recording up to the tick, packed by zlib, in base64")
 
 
 @dataclass(frozen=True)
 class Decision:
-    """What a tree did at a tick.
+    """A tree's result at a tick.
 
     Attributes:
-        statuses: by the ids of the nodes that had one: SUCCESS, FAILURE, RUNNING.
-        command: what was decided, by field.
-        reasons: feedback by the ids of all nodes.
+        statuses: SUCCESS, FAILURE or RUNNING, by the ids of the nodes that had a status.
+        command: the tree's command, by field.
+        reasons: feedback of all nodes, by id.
     """
 
     statuses: Mapping[str, str]
@@ -91,7 +91,7 @@ class Decision:
 
 @dataclass(frozen=True)
 class RegressionCase:
-    """What a robot's tree did at the last tick of the beginning of a recorded match."""
+    """A robot's tree at the last tick of the first part of a recorded match."""
 
     path: Path
     robot: RobotId
@@ -101,11 +101,11 @@ class RegressionCase:
 
 
 def save_regression_case(recording: Recording, robot: RobotId, tick: int, path: str | Path) -> Path:
-    """Save a recorded robot's tick (from 0) as a regression case at ``path``, and return where it is.
+    """Save a recorded robot's tick (from 0) as a regression case at ``path``, and return the path.
 
     Raises:
         RegressionCaseError: there is no such robot or tick, the tree was not ticked then, the
-            recording does not hold its scenario, or played again the tree does not do what it did.
+            recording does not hold its scenario, or the tree decides differently when played again.
         OSError: the case cannot be written.
     """
     path = Path(path)
@@ -148,7 +148,7 @@ def save_regression_case(recording: Recording, robot: RobotId, tick: int, path: 
         match=base64.b64encode(zlib.compress(match, 9)).decode("ascii"),
     )
     path.parent.mkdir(parents=True, exist_ok=True)
-    # JSON is YAML; written so that no number or text changes its meaning.
+    # JSON is valid YAML, and keeps every number and text exact.
     write_atomically(path, file.model_dump_json(indent=2) + "\n")
     return path
 
@@ -157,7 +157,8 @@ def load_regression_case(path: str | Path) -> RegressionCase:
     """Read a regression case.
 
     Raises:
-        RegressionCaseError: the file cannot be read or is none; the message names file and field.
+        RegressionCaseError: the file cannot be read or is no regression case; the message names file and
+        field.
     """
     path = Path(path)
     try:
@@ -171,7 +172,7 @@ def load_regression_case(path: str | Path) -> RegressionCase:
         problem = ": ".join(filter(None, first_problem(error, _CaseFile)))
         raise RegressionCaseError(
             f"{path}: is not a regression case of robobt {__version__} ({problem}); "
-            "save the tick anew with 'robobt record case'"
+            "save the tick again with 'robobt record case'"
         ) from None
     except RecordingError as error:
         raise RegressionCaseError(str(error)) from None
@@ -186,8 +187,8 @@ def check_regression_case(case: RegressionCase | str | Path) -> None:
     """Play a case again and compare.
 
     Raises:
-        RegressionError: the tree does something else; the message says which nodes and what else.
-        RegressionCaseError: the file is no case, or its scenario cannot be played any more.
+        RegressionError: the tree decides differently; the message names the nodes and the differences.
+        RegressionCaseError: the file is no case, or its scenario can no longer be played.
     """
     if not isinstance(case, RegressionCase):
         case = load_regression_case(case)
@@ -213,7 +214,7 @@ def _differences(expected: Decision, actual: Decision) -> Iterator[str]:
 
 
 class _RecordedWorld(World):
-    """A world that shows what was recorded, whatever anybody does."""
+    """A world that replays a recording, whatever the commands."""
 
     def __init__(self, recording: Recording) -> None:
         self._recording = recording
@@ -222,7 +223,7 @@ class _RecordedWorld(World):
         """Place nothing."""
 
     def observe(self) -> Frame:
-        """Return the first recorded frame, which all that is built before the match may look at."""
+        """Return the first recorded frame, for everything built before the match."""
         return self._recording.observation(0)
 
     def truth(self) -> Frame:
@@ -237,9 +238,9 @@ class _RecordedWorld(World):
 
 
 def _play(recording: Recording, robot: RobotId, tick: int, folder: Path) -> Decision:
-    """Tick all trees on the recorded frames up to a tick, and return what one of them did then.
+    """Tick all trees on the recorded frames up to a tick, and return the result of one of them.
 
-    Files are named in the recording as seen from ``folder``.
+    File names in the recording are relative to ``folder``.
     """
     header = recording.header
     if not header.played:
@@ -274,7 +275,7 @@ def _play(recording: Recording, robot: RobotId, tick: int, folder: Path) -> Deci
 
 
 def _beginning(recording: Recording, tick: int, folder: Path) -> bytes:
-    """Return the recording up to a tick, the scenario's files as seen from a folder."""
+    """Return the recording up to a tick, with the scenario's files relative to a folder."""
     header, batches = open_stream(read_bytes(recording.path), recording.path)
     home = folder.resolve()
     rename_files(header.played, lambda file: os.path.relpath(_found(recording, file), home))
@@ -289,7 +290,7 @@ def _beginning(recording: Recording, tick: int, folder: Path) -> bytes:
 
 
 def _found(recording: Recording, file: str) -> Path:
-    """Find a file of the scenario from here, where the match may have been played, or from the recording."""
+    """Find a file of the scenario in the working folder or beside the recording."""
     for folder in (Path(), recording.path.parent):
         if (folder / file).is_file():
             return (folder / file).resolve()

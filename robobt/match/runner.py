@@ -23,12 +23,12 @@ from robobt.plays.private_files import sender
 
 
 class RunError(RobobtError, RuntimeError):
-    """A trial could not be played to its end; the message is one line."""
+    """A trial could not be completed; the message is one line."""
 
 
 @dataclass(slots=True, frozen=True)
 class Recorded:
-    """Where a trial is recorded to, and the layers of which what skills draw is recorded as well."""
+    """The file that a trial is recorded to, and the drawing layers to record."""
 
     file: str | Path | None
     layers: Container[str] = ()
@@ -36,11 +36,11 @@ class Recorded:
 
 @dataclass(slots=True)
 class Run:
-    """The trials that a run has played.
+    """The trials of a run.
 
     Attributes:
-        results: one a trial, in the order of their numbers.
-        seed: seed of the run, from which the trials' seeds follow.
+        results: one per trial, in the order of their numbers.
+        seed: seed of the run, from which the trials' seeds are derived.
         interrupted: whether it was stopped (Ctrl-C) before the last trial.
     """
 
@@ -54,7 +54,7 @@ class Run:
 
 
 def trial_seed(seed: int, trial: int) -> int:
-    """Return the seed of one trial, which depends only on the run's seed and the trial's number."""
+    """Return the seed of one trial, derived from the run's seed and the trial's number only."""
     return int(np.random.SeedSequence([seed, trial]).generate_state(1, np.uint64)[0] >> np.uint64(11))
 
 
@@ -72,21 +72,22 @@ def run_trials_in(
 ) -> Run:
     """Play a scenario many times.
 
-    A trial's result is the same whichever process plays it and whatever else
-    is played. Ctrl-C ends the run; what is finished is kept.
+    A trial's result does not depend on the process or on the other trials. Ctrl-C ends the run and keeps the
+    finished trials.
 
     Args:
         scenario: the scenario to play.
-        world_factory: makes the world of each trial; with several workers a function of a module,
-            because it is sent to them by name.
+        world_factory: makes the world of each trial; with several workers it must be a function of a module,
+            because it is sent by name.
         trials: number of trials; the scenario's by default.
-        workers: number of processes; one is this process itself.
-        seed: seed from which the trials' seeds follow; the scenario's by default.
-        out: file to append each result to as it finishes; trials it holds already are not played again.
-        record: files to record trials to, by trial number; with layers as :class:`Recorded`.
-        on_result: called with each result as it finishes, and with those of ``out`` first.
+        workers: number of processes; 1 plays in this process.
+        seed: seed from which the trials' seeds are derived; the scenario's by default.
+        out: file to append each result to; trials that it already holds are not played again.
+        record: files to record trials to, by trial number; as :class:`Recorded` with drawing layers.
+        on_result: called with the results in ``out`` first, then with each result when it finishes.
         referee: makes the referee of each trial; by default the scenario's own.
-        play: plays a match to its end; another than the usual one needs this process, and so one worker.
+        play: function that plays a match to its end; a custom function runs only in this process, with one
+            worker.
 
     Returns:
         The results, in the order of the trials.
@@ -94,9 +95,8 @@ def run_trials_in(
     Raises:
         ScenarioError: the scenario does not fit the world, or its objects find no place.
         RunError: a trial raised or its worker died.
-        ResultsFileError: ``out`` holds something else.
-        OSError: a file cannot be written.
-        ValueError: an argument is out of range.
+        ResultsFileError: ``out`` holds results of another run or other data. OSError: a file cannot be
+        written. ValueError: an argument is out of range.
     """
     trials = scenario.trials if trials is None else trials
     seed = scenario.seed if seed is None else seed
@@ -145,11 +145,10 @@ def run_trials_in(
 
 @dataclass(slots=True, frozen=True)
 class _Job:
-    """What a worker needs to play any of the trials.
+    """Everything that a worker needs to play any trial.
 
-    The registered plays are there because they are sent by name: a worker that
-    receives them has imported the modules that register them. Tree files are read
-    by each worker.
+    The registered plays are included because they are sent by name, so that a worker that receives them
+    imports the modules that register them. Each worker reads tree files itself.
     """
 
     scenario: Scenario

@@ -1,4 +1,4 @@
-"""A moment of a match as a scenario that begins there."""
+"""A moment of a match as a scenario that starts from it."""
 
 from __future__ import annotations
 
@@ -17,22 +17,22 @@ from robobt.world.rules import own_side
 from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS, Frame, RobotId, RobotState
 
 _GAP = 5e-4
-"""Left between what touches, so that rounding brings nothing together [m]."""
+"""Gap left between touching objects, so that rounding does not make them overlap [m]."""
 
 _PASSES = 100
-"""More than a crowd takes to be moved apart."""
+"""More iterations than separating a crowd takes."""
 
 
 def situation_of(scenario: Scenario, frame: Frame, setups: Mapping[RobotId, RobotSetup]) -> dict[str, Any]:
-    """Return the scenario that begins as ``frame`` is, seen from blue's side, as data.
+    """Return, as data, the scenario that starts from ``frame``, seen from blue's side.
 
-    A scenario begins within the lines and with nothing in one place: what is elsewhere is moved there by as
-    little as that takes. A ball that a robot's sensor sees is held by that robot.
+    A scenario starts with everything within the lines and nothing overlapping, so objects are moved there by
+    the least distance. A ball that a robot's sensor sees is held by that robot.
 
     Args:
-        scenario: what is played.
-        frame: the present.
-        setups: what each robot plays now.
+        scenario: the scenario that is played.
+        frame: the present frame.
+        setups: the present set-up of each robot.
     """
     there = {robot: state for robot, state in frame.robots().items() if robot in setups}
     holder = _holder(frame, there)
@@ -68,7 +68,7 @@ def situation_of(scenario: Scenario, frame: Frame, setups: Mapping[RobotId, Robo
 
 
 def _holder(frame: Frame, there: Mapping[RobotId, RobotState]) -> RobotId | None:
-    """Return the robot in whose mouth the ball is, the one that has it deepest."""
+    """Return the robot with the ball deepest in its mouth."""
     ball = frame.ball
 
     def apart(robot: RobotId) -> float:
@@ -80,7 +80,7 @@ def _holder(frame: Frame, there: Mapping[RobotId, RobotState]) -> RobotId | None
 
 
 def _move_apart(places: list[list[float]], field: FieldGeometry) -> None:
-    """Move discs (x, y, radius) into the field and away from each other, by little [m]."""
+    """Move discs (x, y, radius) into the field and apart from each other, as little as possible [m]."""
     for _ in range(_PASSES):
         moved = False
         for place in places:

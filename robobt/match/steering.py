@@ -1,4 +1,4 @@
-"""What a person does to a match while it is played; each is an event of its recording."""
+"""A person's changes to a running match; each is recorded as an event."""
 
 from __future__ import annotations
 
@@ -30,15 +30,15 @@ from robobt.world.geometry import wrap_angle
 from robobt.world.state import Frame, RobotId, RobotState
 
 Driver = Callable[[Frame, RobotState], RobotCommand]
-"""Decides on a robot's command from its team's view."""
+"""Decides a robot's command from its team's view."""
 
 
 class SteeringError(RobobtError, ValueError):
-    """Something cannot be done to this match."""
+    """A change is not possible in this match."""
 
 
 class Steering:
-    """Changes a match between two ticks. Places are in world coordinates [m], headings in radians."""
+    """Changes a match between two ticks; places are in world coordinates [m], headings in radians."""
 
     def __init__(self, match: MatchLoop) -> None:
         self._match = match
@@ -46,7 +46,7 @@ class Steering:
 
     @property
     def movable(self) -> bool:
-        """Whether robots and ball can be put elsewhere: not on a real field."""
+        """Whether robots and ball can be moved; they cannot on a real field."""
         return self._match.world.movable
 
     @property
@@ -55,13 +55,13 @@ class Steering:
         return isinstance(self._match.referee, Referee)
 
     def setup(self, robot: RobotId) -> RobotSetup:
-        """Return what a robot plays now."""
+        """Return the present set-up of a robot."""
         if robot not in self._setups:
             raise SteeringError(f"{robot} does not play here")
         return self._setups[robot]
 
     def move_ball(self, x: float, y: float, vx: float = 0.0, vy: float = 0.0, held: bool = False) -> None:
-        """Put the ball somewhere, with a velocity [m/s]; one that is still held on is no event."""
+        """Place the ball with a velocity [m/s]; while it is being dragged this records no event."""
         self._check_movable()
         self._try(lambda: self._match.world.put_ball(x, y, vx, vy))
         if held:
@@ -70,7 +70,7 @@ class Steering:
         self._note("ball moved", text=f"to {x:.2f}, {y:.2f} m{rolling}")
 
     def move_robot(self, robot: RobotId, x: float, y: float, heading: float, held: bool = False) -> None:
-        """Put a robot somewhere at rest, likewise; one that was taken off plays again."""
+        """Place a robot at rest, on the field again if it was off; dragging it records no event."""
         self._check_movable()
         self.setup(robot)
         heading = wrap_angle(heading)
@@ -99,19 +99,19 @@ class Steering:
         self._note("referee's order", text=order, team=team)
 
     def play(self, robot: RobotId, play: str, params: Mapping[str, object]) -> None:
-        """Let a robot play something else, or the same with other parameters."""
+        """Give a robot another play, or its play other parameters."""
         self._rebuild(robot, {"play": play, "params": dict(params)}, {})
         given = ", ".join([f"{name}={value}" for name, value in params.items()])
         self._note("plays", robot, f"{play}({given})")
 
     def change_skill(self, robot: RobotId, path: str, params: Mapping[str, object]) -> None:
-        """Give a skill of a robot's tree other parameters; ``path`` is the node's id in recordings."""
+        """Give a skill in a robot's tree other parameters; ``path`` is the node's id in recordings."""
         self._rebuild(robot, {}, {path: params})
         given = ", ".join([f"{name}={value}" for name, value in params.items()])
         self._note("skill changed", robot, f"{path}: {given}")
 
     def parameters(self, robot: RobotId, path: str = "") -> list[tuple[Parameter, Any]]:
-        """Return the parameters of a robot's play, or of a node, with their values, where they are data."""
+        """Return the parameters of a robot's play, or of a node, whose values are plain data."""
         setup = self.setup(robot)
         if path:
             node = _find(self.player(robot).runner.root, path)
@@ -135,7 +135,7 @@ class Steering:
         return found
 
     def drive(self, robot: RobotId, driver: Driver | None) -> None:
-        """Let somebody drive a robot in place of its tree, or the tree again."""
+        """Let a person drive a robot instead of its tree, or give it back to the tree."""
         player = self.player(robot)
         if driver is not None:
             player.runner.stop()
@@ -143,14 +143,14 @@ class Steering:
         self._note("driven by hand" if driver is not None else "driven by its tree", robot)
 
     def player(self, robot: RobotId) -> Player:
-        """Return whoever moves a robot now."""
+        """Return the player that moves a robot now."""
         for player in self._match.players:
             if player.robot == robot:
                 return player
         raise SteeringError(f"{robot} does not play here")
 
     def situation(self) -> dict[str, Any]:
-        """Return the scenario that begins with the present situation, as data.
+        """Return the scenario that starts from the present situation, as data.
 
         Raises:
             SteeringError: no robot is on the field, and a scenario has at least one.
@@ -174,7 +174,7 @@ class Steering:
             field, problem = first_problem(error, RobotSetup)
             raise SteeringError(f"{field}: {problem}") from error
         except Exception as error:
-            # Plays and skills are foreign code, and the match goes on whatever they make of it.
+            # Plays and skills are users' code; the match continues whatever they raise.
             raise SteeringError(message_of(error)) from error
         self._setups[robot] = setup
         player.names = setup.owner()
@@ -206,7 +206,7 @@ def _find(root: Behaviour, path: str) -> Behaviour:
 
 
 def _with_changed(root: Behaviour, path: str, params: Mapping[str, object]) -> Behaviour:
-    """Return the tree with a leaf made anew, with other values of these parameters."""
+    """Return the tree with a leaf rebuilt with other values of these parameters."""
     leaf = _find(root, path)
     if not isinstance(leaf, Leaf):
         raise SteeringError(f"{path} is no skill")
@@ -216,6 +216,6 @@ def _with_changed(root: Behaviour, path: str, params: Mapping[str, object]) -> B
 
 
 def _plain_given(leaf: Leaf[Any]) -> dict[str, object]:
-    """Return what a leaf has to be given, as plain data, so that only what is changed is checked anew."""
+    """Return a leaf's parameters as plain data, so that only changed ones are checked again."""
     required = {parameter.name: parameter for parameter in parameters_of(type(leaf)) if parameter.required}
     return {name: parameter.plain(leaf.parameters()[name]) for name, parameter in required.items()}

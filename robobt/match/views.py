@@ -1,4 +1,4 @@
-"""A team's view of the field, kept as it is whatever its robots' trees do to it."""
+"""Protects a team's view of the field from changes by its robots' trees."""
 
 from __future__ import annotations
 
@@ -22,10 +22,10 @@ _frame, _ball, _game, _status = (
 
 
 class KeptView:
-    """Notices and undoes what a tree has done to the view that it shares with its team-mates'.
+    """Detects and undoes a tree's changes to the view that it shares with its team-mates' trees.
 
-    The game, the field and the limits are read-only and belong to the whole match, to both teams and to later
-    ticks; a skill can still change them by way of ``object.__setattr__`` or ``vars``.
+    Game, field and limits are read-only and shared by the whole match, both teams and all later ticks; a
+    skill can still change them with ``object.__setattr__`` or ``vars``.
     """
 
     def __init__(self) -> None:
@@ -34,29 +34,29 @@ class KeptView:
         self._values_before: list[dict[str, Any]] = []
 
     def take(self, view: Frame) -> None:
-        """Keep this view from now on."""
+        """Store the state of this view."""
         self._view, self._the_ball, self._game, self._made = view, view.ball, view.game, view.made
         self._robots, self._size = (*view.own, *view.opponents), len(view.own)
         self._teams = view.game.blue, view.game.yellow
         settings: dict[int, object] = {id(it.limits): it.limits for it in self._robots}
         settings[id(view.field)], settings[id(view.ball_model)] = view.field, view.ball_model
         if settings.keys() != self._settings.keys():
-            # They mostly stay the same objects for a whole match, and for several robots.
+            # These objects are mostly the same for a whole match and for several robots.
             self._settings = settings
             self._values = [vars(it) for it in settings.values()]
             self._values_before = [dict(values) for values in self._values]
         self._before = self._read()
 
     def mend(self) -> list[str] | None:
-        """Put back what was changed; return the names of the fields ("ball.x"), or None if nothing was.
+        """Restore changed fields; return their names ("ball.x"), or None without a change.
 
-        A change within a field, as in a list, has no name.
+        A change within a field, such as in a list, has no name.
         """
         try:
             if self._read() == self._before and self._settings_hold():
                 return None
         except Exception:
-            # An attribute was deleted, or has become what does not compare to a truth.
+            # An attribute was deleted, or its new value does not compare to a boolean.
             pass
         frame, ball, robots, game, blue, yellow, _ = self._before
         changed = _restore(self._view, "", _FRAME, frame)
@@ -80,8 +80,8 @@ class KeptView:
         return changed
 
     def _read(self) -> tuple[Any, ...]:
-        # Far quicker than copies for every robot, and than comparing the objects. Written out, for there the
-        # interpreter remembers where an attribute is found, which attrgetter looks up each time.
+        # This is far quicker than copies for every robot, and than comparing the objects. It is written out
+        # because the interpreter then caches attribute lookups, which attrgetter repeats every time.
         robots: list[tuple[object, ...]] = [
             (it.id, it.x, it.y, it.heading, it.vx, it.vy, it.omega, it.ball_contact, it.limits)
             for it in self._robots
@@ -102,7 +102,7 @@ class KeptView:
         if self._values == self._values_before:
             return True
         for now, before in zip(self._values, self._values_before, strict=True):
-            # They also keep there what they work out when it is first asked for.
+            # They also keep values there that they compute at first use.
             if now != before and {key: now[key] for key in before} != before:
                 return False
             before.update(now)
@@ -110,10 +110,10 @@ class KeptView:
 
 
 def _restore(target: object, prefix: str, names: tuple[str, ...], values: tuple[object, ...]) -> list[str]:
-    """Set attributes and return the names, with the prefix, of those that had another value."""
+    """Set attributes and return the prefixed names of those that had another value."""
     changed = []
     for name, value in zip(names, values, strict=True):
-        # Not by comparison, which the value that a skill has put there may refuse.
+        # By identity, because a value that a skill put there may not support comparison.
         if getattr(target, name, _MISSING) is not value:
             changed.append(prefix + name)
         object.__setattr__(target, name, value)

@@ -1,6 +1,6 @@
-"""Trees composed of skills; a play is a function that returns a tree, registered by name.
+"""Plays: registered functions that return a tree of skills.
 
-Importing this package enters every one of them in :data:`PLAYS`.
+Importing this package registers all shipped plays in :data:`PLAYS`.
 """
 
 from typing import TYPE_CHECKING

@@ -1,4 +1,4 @@
-"""The robot that goes for the goal and shoots when that will very likely score."""
+"""An attacker that shoots when a goal is very likely."""
 
 from __future__ import annotations
 
@@ -34,21 +34,20 @@ def attack_expected(
     speed: float = 1.0,
     dribble_speed: float = 2.0,
 ) -> Behaviour:
-    """Shoot where the probability of a goal is high enough; else make it so.
+    """Shoot where the probability of a goal is high enough; else create such an opening.
 
-    It kicks in the very period in which the robot points into an opening whose
-    probability reaches the threshold. Until then it carries the ball to the best
-    place and there draws the goalkeeper from one side to the other; once its
-    patience is at an end it takes what there is.
+    The robot kicks in the control period in which it points into an opening whose probability reaches the
+    threshold. Until then it carries the ball to the best place and there draws the goalkeeper from one side
+    to the other; when ``patience`` has run out it takes the best shot available.
 
     Args:
         rater: the shot rater, by name or with settings. The default's model knows our own goalkeeper;
             ``shot_expected`` knows the weaker one of the paper's real shots.
-        min_score: worst shot taken, 0 to 1; of the default rater the probability of a goal.
-        last_resort: the same once its patience is at an end.
-        patience: longest time to draw the goalkeeper for [s].
-        max_distance: no shots from farther than this from the goal [m]; None is any.
-        shot_speed: kick speed of a shot [m/s]; None is the kick's own.
+        min_score: worst shot taken, 0 to 1; with the default rater the probability of a goal.
+        last_resort: worst shot taken once ``patience`` has run out.
+        patience: longest time to draw the goalkeeper [s].
+        max_distance: no shots from farther than this from the goal [m]; None for no limit.
+        shot_speed: kick speed of a shot [m/s]; None for the kick's default.
         speed: factor on the top speed without the ball.
         dribble_speed: top speed with the ball [m/s].
     """

@@ -1,4 +1,4 @@
-"""The robot that attacks by what it has learned."""
+"""An attacker driven by one learned policy."""
 
 from __future__ import annotations
 
@@ -16,17 +16,17 @@ from robobt.tree import Behaviour
 def attack_learned(*, policy: str = "", patience: float = 0.6) -> Behaviour:
     """Get the ball and score by one learned policy, from first touch to goal.
 
-    It knows of other robots what it was trained to see, and of rules nothing: it carries the ball as far as
-    it likes, so that it is for scenarios without a referee. ``score_on_goalkeeper_ppo`` ships for one
-    goalkeeper, others for its defenders and for a duel: docs/several_robots.md says what they can do.
+    The policy sees only the robots that it was trained to see, and ignores the rules: it carries the ball any
+    distance, so use it in scenarios without a referee. The shipped model ``score_on_goalkeeper_ppo`` plays
+    against one goalkeeper; other models are for defenders and for a duel (docs/several_robots.md).
 
-    Where robots and ball are others than in training, a policy may stop at a ball that it does not get into
-    its mouth. Then the written skills get the ball, and it goes on from there.
+    With robots or a ball that differ from training, a policy may stop at a ball that it does not get into its
+    mouth. Then hand-written skills get the ball, and the policy continues from there.
 
     Args:
-        policy: name or file of a model for Score or Duel, or of another task of several robots; without one
+        policy: name or file of a model for Score, Duel or another task with several robots; without a model
             the robot stands still.
-        patience: how long it may be at the ball without getting it [s].
+        patience: how long the robot may be at the ball without getting it [s].
     """
     if not policy:
         return Score()

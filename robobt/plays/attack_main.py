@@ -1,4 +1,4 @@
-"""The robot that goes for the goal."""
+"""The main attacker."""
 
 from __future__ import annotations
 
@@ -34,24 +34,23 @@ def attack_main(
     dribble_speed: float = 2.0,
     steady: float = 0.1,
 ) -> Behaviour:
-    """Score, else pass, else dribble to where a shot would be better; first of all get the ball.
+    """Get the ball, then shoot, else pass, else dribble to a better place for a shot.
 
-    Without team-mates there is never a pass. A shot or pass must have been open
-    for ``steady`` before it is begun, and then survives gaps as long as it has
-    been open, up to that time.
+    Without team-mates it never passes. A shot or pass starts once it has been open for ``steady``. It then
+    survives a gap as long as it has been open, up to ``steady``.
 
     Source: RoboBulls' published code, AttackMain.
 
     Args:
         rater: the shot rater, by name or with settings.
         min_score: worst shot taken, 0 to 1.
-        max_distance: no shots from farther than this from the goal [m]; None is any.
+        max_distance: no shots from farther than this from the goal [m]; None for no limit.
         kick: "default", or "robobulls" for the paper's baseline, which also gets
             to the ball with RoboBulls' pilot.
-        shot_speed: kick speed of a shot [m/s]; None is the kick's own.
+        shot_speed: kick speed of a shot [m/s]; None for the kick's default.
         speed: factor on the top speed without the ball.
         dribble_speed: top speed with the ball [m/s].
-        steady: see above [s]; RoboBulls' own is 0.9.
+        steady: how long a shot or pass must have been open [s]; RoboBulls uses 0.9.
     """
     limits = ROBOBULLS_LIMITS if kick == "robobulls" else None
     look = SelectShot(rater=rater, min_score=min_score, max_distance=max_distance)

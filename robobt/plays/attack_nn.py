@@ -1,4 +1,4 @@
-"""The robot that goes for the goal and lets a network veto its shots."""
+"""An attacker whose shots a network can veto."""
 
 from __future__ import annotations
 
@@ -35,10 +35,10 @@ def attack_nn(
     steady: float = 0.1,
     feint: bool = True,
 ) -> Behaviour:
-    """Attack Main without passes, its shots filtered by a network; without a shot it goes on dribbling.
+    """Play Attack Main without passes, with shots filtered by a network; without a shot keep dribbling.
 
-    Where dribbling has led it to the best place, it draws the goalkeeper from one
-    side to the other until the network lets a shot pass.
+    At the best place the robot draws the goalkeeper from one side to the other until the network accepts a
+    shot.
 
     Source: "Machine Learning Approaches for Attacking Behaviors in Robot Soccer",
     AttackNN.
@@ -46,12 +46,12 @@ def attack_nn(
     Args:
         rater: the shot rater, by name or with settings. The default's model knows our own goalkeeper;
             ``shot_nn`` knows the weaker one of the paper's real shots.
-        max_distance: no shots from farther than this from the goal [m]; None is any.
-        shot_speed: kick speed of a shot [m/s]; None is the kick's own.
+        max_distance: no shots from farther than this from the goal [m]; None for no limit.
+        shot_speed: kick speed of a shot [m/s]; None for the kick's default.
         speed: factor on the top speed without the ball.
         dribble_speed: top speed with the ball [m/s].
-        steady: how long a shot must have been open before it is begun [s].
-        feint: draw the goalkeeper; the paper's play does not, and waits where it has dribbled to.
+        steady: how long a shot must have been open before it starts [s].
+        feint: draw the goalkeeper; the paper's play does not, and waits at the best place instead.
     """
     draw = (DrawGoalkeeper(),) if feint else ()
     return first_of(

@@ -1,4 +1,4 @@
-"""The robot that helps the one with the ball."""
+"""The attacker's supporter."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ from robobt.tree import Behaviour
 
 @PLAYS.register("attack_support")
 def attack_support(*, speed: float = 1.0) -> Behaviour:
-    """Receive a pass, else stand still for one, else wait where a pass and a shot are possible.
+    """Receive a pass, else stand still while a mate aims one, else wait where a pass and a shot are possible.
 
     Source: RoboBulls' published code, AttackSupport.
 
     Args:
-        speed: factor on the top speed to a pass.
+        speed: factor on the top speed when driving to a pass.
     """
     return first_of(
         "attack support",

@@ -40,10 +40,10 @@ def play(name: PlayT | str = "", /) -> PlayT | Callable[[PlayT], PlayT]:
 
 
 def when(name: str, *steps: Behaviour) -> Behaviour:
-    """Return a sequence of conditions and what to do while they hold, judged anew every tick."""
+    """Return a reactive sequence: conditions, and what to do while they hold."""
     return Sequence(name, memory=False, children=list(steps))
 
 
 def first_of(name: str, *options: Behaviour) -> Behaviour:
-    """Return a selector that plays the first option that can be played, chosen anew every tick."""
+    """Return a reactive selector, which plays the first option that does not fail."""
     return Selector(name, memory=False, children=list(options))

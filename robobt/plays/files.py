@@ -1,4 +1,4 @@
-"""Plays in files: every skill, play and rater by its name."""
+"""Plays in files, which name skills, plays and raters."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ from robobt.tree.parameters import check_parameters
 
 
 def _place_models(value: Value, folder: Path) -> Value:
-    """Return a value with its models as seen from where robobt runs, not from the tree file's folder."""
+    """Return a value with model paths relative to the working folder, not to the tree file's folder."""
     if isinstance(value, Text):
         return Text(str(_place_models(value.text, folder)))
     return rename_models(value, lambda file: str(folder / file))
@@ -52,11 +52,11 @@ VOCABULARY = Vocabulary(
     Store,
     _place_models,
 )
-"""What the files of plays may name."""
+"""The names that play files may use."""
 
 
 def load_play(path: str | Path) -> FilePlay:
-    """Load a play from a file, to be called like those of :data:`~robobt.plays.base.PLAYS`.
+    """Load a play from a file, callable like those in :data:`~robobt.plays.base.PLAYS`.
 
     Args:
         path: a file that ends in .yaml, .yml, .xml or .btproj.
@@ -68,12 +68,12 @@ def load_play(path: str | Path) -> FilePlay:
 
 
 def is_play_file(name: str) -> bool:
-    """Return whether a play's name is a file's (.yaml, .yml, .xml, .btproj)."""
+    """Return whether a play's name is a tree file's (.yaml, .yml, .xml, .btproj)."""
     return name.endswith(FILE_ENDINGS)
 
 
 def problem_with_play(name: str) -> str | None:
-    """Return why no play has this name, None where one has, or where it is a tree file's."""
+    """Return why no play has this name; None if one has, or if it is a tree file."""
     files, inner = split_play(name)
     where = f" in {', '.join(files)}" if files else ""
     if not files and name.endswith(".py"):
@@ -95,14 +95,14 @@ def problem_with_play(name: str) -> str | None:
 
 
 def find_play(name: str, folder: str | Path = ".") -> Play:
-    """Return a play by its name, or a file's play where the name ends in .yaml, .yml, .xml or .btproj.
+    """Return a play by its name, or a tree file's play if the name ends in .yaml, .yml, .xml or .btproj.
 
     A tree file is read again only when it has changed. A play of a Python file, ``my_team.py:striker``, has
-    to be called within its :func:`~robobt.plays.private_files.private_files`.
+    to be built within its :func:`~robobt.plays.private_files.private_files`.
 
     Args:
-        name: of a play, or of a file.
-        folder: what the paths of tree files are relative to.
+        name: name of a play, or of a file.
+        folder: folder to which paths of tree files are relative.
 
     Raises:
         KeyError: no play has that name.
@@ -126,7 +126,7 @@ def build_play(name: str, params: Mapping[str, object]) -> Behaviour:
 
     Args:
         name: as for :func:`find_play`.
-        params: its parameters as plain data.
+        params: the play's parameters as plain data.
 
     Raises:
         KeyError: no play has that name.
@@ -141,7 +141,7 @@ def build_play(name: str, params: Mapping[str, object]) -> Behaviour:
             with users_code(name):
                 tree = builder(**given)
         except SystemExit as error:
-            # Nothing else would say why the process has ended.
+            # Otherwise nothing would report why the process ended.
             raise PlayError(mistake_in_play(error)) from error
     check_returned(name, builder, tree)
     return tree
@@ -153,7 +153,7 @@ def _load_once(path: Path, _state: tuple[tuple[int, int], ...], _owner: Namespac
 
 
 def contents_of(name: str) -> list[bytes]:
-    """Return what the files of a play's name hold, which is what it plays: nothing for a common name."""
+    """Return the content of the files in a play's name, which decides what it plays; empty without files."""
     owner, (_, inner) = private_files(name), split_play(name)
     tree = [file.read_bytes() for file in tree_files(inner)] if is_play_file(inner) else []
     return [*tree, *([] if owner is None else [owner.sources.digest().encode()])]
@@ -186,6 +186,6 @@ def tree_xml(root: Behaviour, name: str) -> str:
         name: of the play.
 
     Raises:
-        ValueError: as :func:`tree_yaml`, or XML cannot express it.
+        ValueError: as for :func:`tree_yaml`, or XML cannot express the tree.
     """
     return write_xml(describe_tree(root, VOCABULARY, name), VOCABULARY)

@@ -36,21 +36,21 @@ def go_to_ball_and_shoot(
 
     Approach and shot are hand-written or learned, in any combination. The
     pick-up between them is hand-written, as in the paper; approach and pick-up
-    both hold on to the ball up to 0.3 m, so that they do not take turns at 0.2 m.
+    both keep their state up to 0.3 m from the ball, so that they do not alternate at 0.2 m.
 
     Source: "Machine Learning Approaches for Attacking Behaviors in Robot Soccer",
     Go-To-Ball-And-Shoot.
 
     Args:
-        style: "default" goes through the three skills; "robobulls" is the paper's
-            baseline, whose kick includes the way behind the ball.
-        policy: what decides the approach in the default style: "geometric", "ddpg",
-            or the name or file of a model for GoToBall; as ``{name: NAME, SETTING: VALUE}`` with settings.
-        shoot: what shoots in the default style: "kick_to_target" is KickToTarget at the rater's choice, and
-            a policy is Shoot's: "geometric", which takes the rater's choice too, "ddpg", or the name or
-            file of a model.
-        pickup_speed: how fast the pick-up closes in on the ball in the default style [m/s]; None for
-            as fast as the robot's dribbler takes it, for approaches that arrive at speed.
+        style: "default" runs the three skills; "robobulls" is the paper's baseline, whose kick includes the
+            way behind the ball.
+        policy: policy of the approach in the default style: "geometric", "ddpg", or the name or file of a
+            model for GoToBall; ``{name: NAME, SETTING: VALUE}`` with settings.
+        shoot: how to shoot in the default style: "kick_to_target" uses KickToTarget at the rater's choice;
+            otherwise a policy for Shoot: "geometric", which also takes the rater's choice, "ddpg", or the
+            name or file of a model.
+        pickup_speed: how fast the pick-up closes in on the ball in the default style [m/s]; None for the
+            highest speed that the robot's dribbler takes, for approaches that arrive at speed.
         rater: the shot rater that chooses the point to shoot at, by name or with settings.
     """
     if style == "robobulls":

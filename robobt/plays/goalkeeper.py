@@ -25,24 +25,23 @@ from robobt.world.limits import RobotLimits
 
 @PLAYS.register("goalkeeper")
 def goalkeeper(*, speed: float = 1.0, style: Literal["default", "robobulls"] = "default") -> Behaviour:
-    """Keep the ball out of the own goal; the first branch whose condition holds is played.
+    """Keep the ball out of the own goal; the first branch whose condition holds is ticked.
 
-    1. Somebody aims at the goal: onto the line of the shot to come.
+    1. A robot aims at the goal: onto the line of the expected shot.
     2. A shot comes: onto its line.
     3. The ball rests on the edge of the defence area, no opponent near: fetch it.
     4. The ball rests in the defence area: clear it to a team-mate or upfield.
-    5. The ball is before the goal: between the two.
-    6. Otherwise home.
+    5. The ball is in front of the goal: between ball and goal.
+    6. Otherwise: back to its place in front of the goal.
 
     Source: RoboBulls' published code, Goalie.
 
     Args:
         speed: factor on its top speed, with and without the ball; 0.5 is the
             paper's half-speed goalkeeper.
-        style: "default" drives as the robot can, and covers the angle between the
-            posts. "robobulls" is the paper's goalkeeper: it covers the near post,
-            drives at most at 2.25 m/s, 1.5 m/s when there is no danger, with
-            RoboBulls' accelerations, and clears with RoboBulls' kick.
+        style: "default" drives within the robot's limits and covers the angle between the posts. "robobulls"
+            is the paper's goalkeeper: it covers the near post, drives at most 2.25 m/s, or 1.5 m/s without
+            danger, with RoboBulls' accelerations, and clears with RoboBulls' kick.
     """
     if style == "robobulls":
         return _robobulls(robobulls_limits(1.5 * speed), robobulls_limits(speed))
@@ -53,12 +52,12 @@ def goalkeeper(*, speed: float = 1.0, style: Literal["default", "robobulls"] = "
 
 
 def keep_goal(speed: float, clear: Behaviour, learned: Behaviour | None = None) -> Behaviour:
-    """Do what ``goalkeeper`` does in its default style.
+    """Return the tree of ``goalkeeper`` in its default style.
 
     Args:
         speed: factor on the top speed.
-        clear: what to do with a ball that rests in the area.
-        learned: what to try first with one that does not.
+        clear: tree for a ball that rests in the area.
+        learned: tree to try first for a ball that does not rest.
     """
     block = (
         when("aim", BallAimedAtGoal(), BlockShot(speed=speed)),
@@ -79,13 +78,13 @@ def fitted_goalkeeper(
 ) -> Behaviour:
     """Keep the goal as the paper's goalkeeper does, with traits that were fitted to recorded shots.
 
-    The tree is that of ``goalkeeper`` in the style "robobulls"; there is one pace, danger or not.
+    The tree is that of ``goalkeeper`` in the style "robobulls", with one speed for danger and no danger.
 
     Args:
         max_speed: top speed [m/s].
-        acceleration: how fast it speeds up [m/s^2].
-        braking: it drives so that it could stop at this rate [m/s^2].
-        offset: how far beside the line of a shot it stands, to the left as the ball flies [m].
+        acceleration: acceleration [m/s^2].
+        braking: deceleration with which it plans to stop [m/s^2].
+        offset: distance beside the line of a shot, to the left in the ball's direction [m].
     """
     limits = ROBOBULLS_LIMITS.model_copy(
         update={"max_speed": max_speed, "acceleration": acceleration, "braking": braking}
@@ -114,12 +113,12 @@ def _robobulls(quick: RobotLimits, calm: RobotLimits, offset: float = 0.0) -> Be
 
 
 def where_to_clear() -> Behaviour:
-    """Aim at a team-mate, else to where there is room."""
+    """Aim at a team-mate, else at free space."""
     return first_of("where to", SelectClearance(), AimUpfield())
 
 
 def robobulls_limits(factor: float) -> RobotLimits:
-    """Apply the velocity multiplier of RoboBulls' pilot: it scales the top speed and nothing else."""
+    """Apply the velocity multiplier of RoboBulls' pilot, which scales only the top speed."""
     return ROBOBULLS_LIMITS.model_copy(
         update={"max_speed": ROBOBULLS_LIMITS.max_speed * check_factor(factor)}
     )

@@ -1,4 +1,4 @@
-"""A goalkeeper under a referee: what the referee wants comes first, open play last."""
+"""A goalkeeper under a referee: the referee's commands come first, open play last."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from robobt.tree import Behaviour, Inverter
 from robobt.world.game import Restart
 
 _KICKED = 2.5
-"""A ball that approaches the goal faster than this was kicked, not rolled on [m/s]."""
+"""A ball that approaches the goal faster than this counts as kicked [m/s]."""
 
 
 @PLAYS.register("keeper")
@@ -32,7 +32,7 @@ def keeper(*, speed: float = 1.0) -> Behaviour:
 
 
 def keep_by_the_rules(speed: float, in_play: Behaviour) -> Behaviour:
-    """Do what the referee wants of a goalkeeper, and ``in_play`` while the ball is."""
+    """Follow the referee's commands for a goalkeeper, and tick ``in_play`` while the ball is in play."""
     return first_of(
         "keeper",
         when("halted", IsHalted(), Stop()),
@@ -44,7 +44,7 @@ def keep_by_the_rules(speed: float, in_play: Behaviour) -> Behaviour:
 
 
 def save_penalty(speed: float) -> Behaviour:
-    """Come out to the kicker of a penalty kick, who is alone; get onto the line of what it kicks."""
+    """Come out towards the kicker of a penalty kick; get onto the line of a kicked ball."""
     return first_of(
         "save",
         when("shot", ShotComing(min_speed=_KICKED, margin=0.1), BlockShot(speed=speed)),

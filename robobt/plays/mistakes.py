@@ -1,4 +1,4 @@
-"""What goes wrong in the code of a play, told with its place."""
+"""Errors in the code of a play, with file and line."""
 
 from __future__ import annotations
 
@@ -16,34 +16,34 @@ from robobt.tree.walk import fault_of, preorder
 
 
 class PlayError(RobobtError):
-    """A play whose code raises as its tree is built, or returns no tree."""
+    """A play's code raises while its tree is built, or returns no tree."""
 
 
 _OTHERS = NOBODYS | {"py_trees"}
-"""Modules that no play is written in, by their first names."""
+"""Top-level names of modules that contain no play."""
 
 
 _built: WeakValueDictionary[int, Behaviour] = WeakValueDictionary()
-"""The nodes of all trees that plays have returned, by their id()."""
+"""The nodes of all trees that plays have returned, by id()."""
 
 
 def mistake_in_play(error: BaseException) -> str:
-    """Return what an exception says that building a tree raised, with the play's file and line.
+    """Return the message of an exception from building a tree, with the play's file and line.
 
-    An exception that no code outside robobt and py_trees has led to comes as it is.
+    An exception without code outside robobt and py_trees in its traceback is left unchanged.
     """
     places = [
         (Path(frame.f_code.co_filename).name, line)
         for frame, line in traceback.walk_tb(error.__traceback__)
         if str(frame.f_globals.get("__name__")).partition(".")[0] not in _OTHERS
-        # What other packages raise, the play has asked them for.
+        # If another package raises, the play called it.
         and "site-packages" not in frame.f_code.co_filename
         and frame.f_globals.get("__file__") is not None
     ]
     said = _wrong_child(error) or message_of(error)
     if not places:
         return said
-    # robobt's own errors are whole sentences; of others the kind says half, or all.
+    # robobt's errors are whole sentences; other errors need their type's name.
     whole = isinstance(error, RobobtError | ValueError) or not error.args
     kind = "" if whole else f"{type(error).__name__}: "
     file, line = places[-1]
@@ -51,15 +51,15 @@ def mistake_in_play(error: BaseException) -> str:
 
 
 def check_returned(name: str, builder: Callable[..., object], returned: object) -> None:
-    """Check that what a play returned is a tree: nodes, each of them once and of no tree before.
+    """Check that a play returned a tree: of nodes, each only once and in no earlier tree.
 
     Args:
         name: the play's name.
         builder: the play.
-        returned: what it returned.
+        returned: the object that it returned.
 
     Raises:
-        PlayError: it is none; the message names the play, its file and its line.
+        PlayError: it is no tree; the message names the play, its file and its line.
     """
     problem = _no_tree(returned)
     if problem is None:
@@ -100,7 +100,7 @@ def _no_tree(returned: object) -> str | None:
 
 
 def _no_node(given: object) -> str | None:
-    """Return what is wrong with an object in the place of a node, None if it is a node."""
+    """Return what is wrong with an object in place of a node, or None for a node."""
     if isinstance(given, Behaviour):
         name = type(given).__name__
         made = hasattr(given, "children")
@@ -115,7 +115,7 @@ def _no_node(given: object) -> str | None:
 
 
 def _wrong_child(error: BaseException) -> str | None:
-    """Return what is wrong with the children that a node of py_trees refuses, else None."""
+    """Return what is wrong with children that a py_trees node would refuse, or None."""
     for frame, _ in traceback.walk_tb(error.__traceback__):
         if not str(frame.f_globals.get("__name__")).startswith("py_trees."):
             continue

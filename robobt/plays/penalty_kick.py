@@ -34,19 +34,19 @@ def penalty_kick(
     carry: float = 0.8,
     dribble_speed: float = 1.0,
 ) -> Behaviour:
-    """Carry the ball towards the goal, there draw the goalkeeper to one side and shoot into the other.
+    """Carry the ball towards the goal, draw the goalkeeper to one side and shoot into the other.
 
-    The kick is over after 10 s. Until it shoots the robot lets the ball go now and
-    then, because nobody may carry it farther than a metre; it is slow enough with
-    the ball to stand within that way and draw the goalkeeper at rest.
+    The kick is over after 10 s. Until it shoots, the robot releases the ball repeatedly, because the rules
+    allow carrying it for a metre only; it is slow enough to stop within that distance and draw the goalkeeper
+    at rest.
 
     Args:
         rater: the shot rater, by name or with settings.
-        min_score: score of a shot that it takes at once, 0 to 1; of the default rater the probability of
-            a goal.
-        distance: from the goal at which it draws the goalkeeper [m].
-        patience: longest time to do that; then it shoots at what there is [s].
-        carry: farthest that it carries the ball at once [m].
+        min_score: score of a shot that it takes at once, 0 to 1; with the default rater the probability of a
+            goal.
+        distance: distance from the goal at which it draws the goalkeeper [m].
+        patience: longest time to do that; then it takes the best shot available [s].
+        carry: largest distance that it carries the ball without releasing it [m].
         dribble_speed: top speed with the ball [m/s].
     """
     return first_of(

@@ -1,7 +1,7 @@
-"""Plays of Python files that are an owner's alone, so that two states of one team can meet in a match.
+"""Private plays of Python files, so that two versions of one team can play each other.
 
-Such a play is named by its file, ``old/my_team.py:striker``. All that the file registers is found by its own
-plays only, and all modules that it imports from its folder are its own too.
+Such a play is named by its file, ``old/my_team.py:striker``. Only the file's own plays find what it
+registers, and the modules that it imports from its folder are private too.
 """
 
 from __future__ import annotations
@@ -25,15 +25,15 @@ from robobt.plays.sources import NOBODYS, Sources, read_sources
 from robobt.tree.namespace import Namespace, within
 
 _PREFIX = "robobt_private_"
-"""How the packages begin that owners' modules are in."""
+"""Prefix of the packages of private modules."""
 
 _NAMED = re.compile(r"(?P<files>[^=]+?\.py(?:,[^=]+?\.py)*):(?P<play>[^=]+)")
 
 
 def split_play(name: str) -> tuple[tuple[str, ...], str]:
-    """Return the Python files, and the name within them, of a play's name; no files of a common name.
+    """Return the Python files in a play's name, and the name within them; no files for a public name.
 
-    ``old/my_team.py:striker`` is of one file, ``old/skills.py,old/plays.py:striker`` of two.
+    ``old/my_team.py:striker`` has one file, ``old/skills.py,old/plays.py:striker`` has two.
     """
     named = _NAMED.fullmatch(name)
     if named is None:
@@ -42,19 +42,19 @@ def split_play(name: str) -> tuple[tuple[str, ...], str]:
 
 
 def join_play(files: Sequence[str | Path], name: str) -> str:
-    """Return what :func:`split_play` splits."""
+    """Join files and play into one name; the inverse of :func:`split_play`. Return it."""
     return f"{','.join(map(str, files))}:{name}" if files else name
 
 
 class PrivateFiles(Namespace):
-    """What Python files register, and the modules they are run as.
+    """The registrations of Python files, and the modules that they run as.
 
     Args:
-        shown: the files as they were given, for messages.
-        sources: what they say.
+        shown: the files as given, for messages.
+        sources: the files' text.
 
     Raises:
-        PythonFileError: one raises as it is run.
+        PythonFileError: a file raises when it runs.
     """
 
     def __init__(self, shown: Sequence[str], sources: Sources) -> None:
@@ -67,7 +67,7 @@ class PrivateFiles(Namespace):
         sys.modules[self.package] = module
         for file, name in zip(shown, sources.entries, strict=True):
             try:
-                # What it prints must not end up among a command's figures.
+                # Its output must not mix with a command's figures.
                 with redirect_stdout(sys.stderr), users_code(file):
                     import_module(f"{self.package}.{name}")
             except (Exception, SystemExit) as error:
@@ -78,7 +78,7 @@ class PrivateFiles(Namespace):
     def run(self, module: ModuleType) -> None:
         """Run one of the modules."""
         source = self.sources.modules[module.__name__.partition(".")[2]]
-        # So its functions import what is theirs at any time, also long after.
+        # Its functions then import the private modules at any time, also later.
         module.__dict__["__builtins__"] = {**vars(builtins), "__import__": self._import}
         with within(self):
             exec(compile(source.text, source.path, "exec", dont_inherit=True), module.__dict__)
@@ -91,12 +91,12 @@ class PrivateFiles(Namespace):
         fromlist: Sequence[str] | None = (),
         level: int = 0,
     ) -> ModuleType:
-        """Do what the statement ``import`` does, with the owner's modules before all others."""
+        """Import like the statement ``import``, with the private modules first."""
         top = name.partition(".")[0]
         if level:
             return builtins.__import__(name, given, local, fromlist or (), level)
         if top in NOBODYS or not self.sources.owns(top):
-            # What others register as they are first imported is everybody's.
+            # Registrations of other modules at their first import are public.
             with within(None):
                 return builtins.__import__(name, given, local, fromlist or (), 0)
         if fromlist:
@@ -106,7 +106,7 @@ class PrivateFiles(Namespace):
 
 
 class _Finder:
-    """Finds the owners' modules, in what was read of them."""
+    """Finds private modules in the sources that were read."""
 
     @staticmethod
     def find_spec(name: str, _path: object = None, _target: object = None) -> ModuleSpec | None:
@@ -124,13 +124,13 @@ class _Finder:
 
 
 class _Loader(Loader):
-    """Runs an owner's modules."""
+    """Runs private modules."""
 
     def __init__(self, owner: PrivateFiles) -> None:
         self._owner = owner
 
     def create_module(self, spec: ModuleSpec) -> None:
-        """Leave it to Python."""
+        """Use Python's default."""
 
     def exec_module(self, module: ModuleType) -> None:
         self._owner.run(module)
@@ -139,16 +139,16 @@ class _Loader(Loader):
 _packages: dict[str, PrivateFiles] = {}
 _by_place: dict[tuple[Path, ...], PrivateFiles] = {}
 _by_name: dict[tuple[str, ...], PrivateFiles] = {}
-"""Those that were sent to this process, by the files as they were given where they were read."""
+"""Private files sent to this process, by the file names given where they were read."""
 
 sys.meta_path.insert(0, _Finder)
 
 
 def private_files(name: str) -> PrivateFiles | None:
-    """Return the files of a play's name, run once in a process; None for a play that is everybody's.
+    """Return the private files of a play's name, run once per process; None for a public play.
 
     Raises:
-        PythonFileError: a file cannot be read, or raises as it is run.
+        PythonFileError: a file cannot be read, or raises when it runs.
     """
     files, _ = split_play(name)
     if not files:
@@ -162,10 +162,10 @@ def private_files(name: str) -> PrivateFiles | None:
 
 
 def sender(names: Sequence[str] = ()) -> Callable[[], None]:
-    """Return what makes another process know the same Python files, in the state that they have here.
+    """Return an object that gives another process the same Python files as they are here.
 
     Args:
-        names: of plays.
+        names: names of plays.
     """
     sent: dict[tuple[str, ...], Sources] = {}
     for name in names:

@@ -1,4 +1,4 @@
-"""Plays, skills and raters in a Python file of the user's that no package installs."""
+"""Plays, skills and raters in a user's Python file that is not installed."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from robobt.tree import Registry
 from robobt.world.observation import OWN_OBSERVATIONS
 
 REGISTRIES: list[Registry[Any]] = [PLAYS, SKILLS, RATERS, POLICIES]
-"""What a file may enter things in; when it raises, they are taken out again."""
+"""Registries that a file may add to; if it raises, its entries are removed."""
 
 _imported: dict[Path, ModuleType] = {}
 
@@ -32,13 +32,12 @@ def import_file(path: str | Path) -> ModuleType:
 
     The plays, skills, raters and policies that it registers are there then.
 
-    A file is run once; asked for again it is the same module. Modules that lie
-    beside it can be imported by it. What it prints goes to stderr. When it raises, nothing of what it has
-    registered stays.
-    Worker processes of a match run the same files (:func:`imported_files`).
+    A file runs once; later calls return the same module. It can import modules beside it. Its output goes to
+    stderr. If it raises, all its registrations are removed. Worker processes of a match run the same files
+    (:func:`imported_files`).
 
     Raises:
-        PythonFileError: it cannot be read, or raises as it runs.
+        PythonFileError: the file cannot be read, or raises when it runs.
     """
     real, source = read_python(path)
     if real not in _imported:
@@ -53,7 +52,7 @@ def import_files(paths: Iterable[str | Path]) -> None:
 
 
 def imported_files() -> tuple[Path, ...]:
-    """Return the files that :func:`import_file` has run in this process, in that order."""
+    """Return the files that :func:`import_file` has run in this process, in order."""
     return tuple(_imported)
 
 
@@ -61,13 +60,13 @@ def _run(path: Path, source: bytes, shown: str) -> ModuleType:
     spec = spec_from_file_location(_own_name(path), path)
     assert spec is not None
     module = module_from_spec(spec)
-    # Behind all else, so that a file called like an installed module does not take its place.
+    # At the end of the path, so that a file named like an installed module does not replace it.
     if str(path.parent) not in sys.path:
         sys.path.append(str(path.parent))
     sys.modules[module.__name__] = module
     undo, observations = [registry.undo_point() for registry in REGISTRIES], dict(OWN_OBSERVATIONS)
     try:
-        # What it prints must not end up among a command's figures.
+        # Its output must not mix with a command's figures.
         with redirect_stdout(sys.stderr), users_code(shown):
             exec(compile(source, str(path), "exec"), module.__dict__)
     except (Exception, SystemExit) as error:
@@ -81,12 +80,12 @@ def _run(path: Path, source: bytes, shown: str) -> ModuleType:
 
 
 def _own_name(path: Path) -> str:
-    """Return a name that no installed module has; the same in every process that runs this file."""
+    """Return a module name that no installed module has, the same in every process that runs this file."""
     return f"file_{path.stem.replace('.', '_')}_{crc32(bytes(path)):08x}"
 
 
 def problem_of(error: BaseException, path: Path, shown: str) -> PythonFileError:
-    """Return the error of running a file, with the line of the file that raised it, or that led to it."""
+    """Return the error from running a file, with the line of the file that raised it or called what did."""
     if isinstance(error, SyntaxError) and error.filename == str(path):
         line, reason = error.lineno or None, error.msg
     else:

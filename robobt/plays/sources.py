@@ -1,4 +1,4 @@
-"""The Python files of a team: those that are named, and all of theirs that these import."""
+"""The Python files of a team: the files named, and the team's modules that they import."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from pathlib import Path
 from robobt.config.errors import ConfigError
 
 NOBODYS = frozenset({*sys.stdlib_module_names, "robobt"})
-"""Modules that are never a team's, whatever lies beside its files."""
+"""Modules that never belong to a team, whatever is beside its files."""
 
 
 class PythonFileError(ConfigError):
@@ -21,7 +21,7 @@ class PythonFileError(ConfigError):
 
 @dataclass(slots=True, frozen=True)
 class Source:
-    """A module: where it was read, its text, and whether it is a package's ``__init__``."""
+    """A module: its path, its text, and whether it is a package's ``__init__``."""
 
     path: str
     text: bytes
@@ -30,10 +30,10 @@ class Source:
 
 @dataclass(slots=True)
 class Sources:
-    """The modules of a team as they were when they were read.
+    """A team's modules, as read at one time.
 
     Attributes:
-        entries: dotted names of the files that were named, in their order.
+        entries: dotted names of the files that were named, in order.
         modules: every module by its dotted name.
     """
 
@@ -41,7 +41,7 @@ class Sources:
     modules: dict[str, Source] = field(default_factory=dict)
 
     def digest(self) -> str:
-        """Hash what they say, wherever they lie."""
+        """Hash the texts, independent of the paths."""
         digest = hashlib.blake2b(repr(self.entries).encode(), digest_size=16)
         for name, source in sorted(self.modules.items()):
             digest.update(f"\n{name} {len(source.text)}\n".encode() + source.text)
@@ -53,10 +53,10 @@ class Sources:
 
 
 def read_python(file: str | Path) -> tuple[Path, bytes]:
-    """Return the real path of a Python file, and what it holds.
+    """Return the real path of a Python file, and its text.
 
     Raises:
-        PythonFileError: it cannot be read, or is none.
+        PythonFileError: it cannot be read, or is no Python file.
     """
     shown = str(file)
     try:
@@ -71,11 +71,11 @@ def read_python(file: str | Path) -> tuple[Path, bytes]:
 
 
 def read_sources(files: Sequence[str | Path]) -> Sources:
-    """Read Python files and, of what they import anywhere in their text, all that lies in their folders.
+    """Read Python files and all modules in their folders that they import anywhere in their text.
 
-    A file in a package, that is beside an ``__init__.py``, is a module of it; the package's folder is where
-    imports are looked for. Of a package that is imported all modules are read, since it may import them by
-    names that it makes up.
+    A file beside an ``__init__.py`` is a module of that package, and its imports are searched in the
+    package's folder. All modules of an imported package are read, because it may import them by computed
+    names.
 
     Raises:
         PythonFileError: a file cannot be read or is no Python file, or two have one name.
@@ -108,7 +108,7 @@ class _Reader:
         self._followed: set[str] = set()
 
     def follow(self, name: str) -> None:
-        """Read all that a module imports, and what that does."""
+        """Read all modules that a module imports, recursively."""
         waiting = [name]
         while waiting:
             name = waiting.pop()
@@ -119,12 +119,12 @@ class _Reader:
                 parts = wanted.split(".")
                 if parts[0] in NOBODYS:
                     continue
-                # A package is run before what is in it.
+                # A package runs before its modules.
                 for end in range(1, len(parts) + 1):
                     waiting += self._read(".".join(parts[:end]))
 
     def _read(self, name: str) -> list[str]:
-        """Read a module, of a package all; return what there is."""
+        """Read a module, or all modules of a package; return those that exist."""
         if name in self._modules:
             return [name]
         for root in self._roots:
@@ -149,12 +149,12 @@ class _Reader:
     def _wanted(name: str, source: Source) -> Iterator[str]:
         """Yield the dotted names that a module imports; of ``from a import b`` also ``a.b``."""
         package = name if source.package else name.rpartition(".")[0]
-        # Of a file in a package, that package.
+        # For a file in a package, the package.
         yield from [package] if package else []
         try:
             tree = ast.parse(source.text)
         except (SyntaxError, ValueError):
-            # It is told where the module is run.
+            # The error is reported where the module runs.
             return
         for node in ast.walk(tree):
             if isinstance(node, ast.Import):

@@ -1,4 +1,4 @@
-"""A robot that stands still: somebody else drives it, or nobody."""
+"""A robot that stands still, for example because a person drives it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Written skills that help out where a policy does not get the ball."""
+"""Hand-written skills that take over when a policy does not get the ball."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ from robobt.tree import Behaviour
 
 
 def get_where_stuck(patience: float = StuckAtBall.patience) -> Behaviour:
-    """Get a ball at which a policy stops; ``patience`` is how long it may be there without getting it [s].
+    """Get a ball that a policy fails to get for ``patience`` [s]. Return the tree.
 
-    Where robots and ball are others than in training, a policy may come to rest at a ball beside its mouth.
+    With robots or a ball that differ from training, a policy may stop at a ball beside its mouth.
     """
     return when(
         "stuck", StuckAtBall(patience=patience), MayTouchBall(), IsClosestToBall(), GoToBall(), PickUpBall()

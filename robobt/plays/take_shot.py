@@ -20,18 +20,17 @@ def take_shot(
     shot_speed: float | None = None,
     max_turn: float = 4.0,
 ) -> Behaviour:
-    """Carry the ball to a place and shoot from there at a point of the goal line, whatever the chance.
+    """Carry the ball to a place and shoot from there at a point of the goal line, whatever the chances.
 
-    Shot data must not be selected by what will be learned from it: this shooter
-    judges nothing.
+    The shot is not rated, so that the collected data is not biased by a rating.
 
     Args:
-        target_y: of the point on the opponent's goal line [m].
-        place_x: where to shoot from, its x [m]; a ball that is there is not carried.
-        place_y: its y [m].
+        target_y: y coordinate of the point on the opponent's goal line [m].
+        place_x: x coordinate of the place to shoot from [m]; a ball already there is not carried.
+        place_y: y coordinate of the place to shoot from [m].
         dribble_speed: top speed with the ball [m/s].
-        tolerance: angle by which the kick may be off [rad]; the default is RoboBulls' degree.
-        shot_speed: kick speed of the shot [m/s]; None is the kick's own.
+        tolerance: angle by which the kick may be off [rad]; the default is RoboBulls' one degree.
+        shot_speed: kick speed of the shot [m/s]; None for the kick's default.
         max_turn: turning rate with the ball [rad/s].
     """
     return Sequence(

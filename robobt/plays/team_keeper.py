@@ -16,16 +16,16 @@ from robobt.tree import Behaviour
 
 @PLAYS.register("team_keeper")
 def team_keeper(*, speed: float = 1.0, chips: bool = True, policy: str = "") -> Behaviour:
-    """Keep goal as ``keeper`` does, and chip the ball out of the area where there is no way along the ground.
+    """Keep goal as ``keeper`` does, and chip the ball out of the area if no way along the ground is free.
 
-    A ball that rests in the area goes to the foremost team-mate that can be reached, else upfield, over
-    whoever waits before the area.
+    A ball that rests in the area is kicked to the foremost team-mate that can be reached, else upfield, over
+    robots in front of the area.
 
     Args:
         speed: factor on its top speed.
         chips: whether it may chip.
         policy: name or file of a model for Goalkeeper, which keeps goal while the ball is in play in the own
-            half and not the goalkeeper's to clear; empty for the written goalkeeper alone.
+            half and does not have to be cleared; empty for the hand-written goalkeeper alone.
     """
 
     def kick(*, chip: bool = False) -> KickToTarget:

@@ -44,13 +44,13 @@ PASS_TOLERANCE = 0.06
 """Angle by which a pass may be off [rad]."""
 
 CARRIED = 0.9
-"""It lets go of a ball carried so far [m]."""
+"""Carried distance after which it releases the ball [m]."""
 
 CARRYING, KEEP_WAY = 1.5, 0.25
-"""How fast it carries the ball [m/s], and for how long it keeps to a way where another turns up [s]."""
+"""Speed with the ball [m/s], and how long it keeps its way after the planner proposes another [s]."""
 
 SURE = 0.5
-"""Least chance with which a pass has to arrive at a restart, where the ball is safe."""
+"""Least chance that a pass from a restart arrives; the ball is safe before it."""
 
 
 @PLAYS.register("team_player")
@@ -66,26 +66,28 @@ def team_player(
     without: Omitted = "nothing",
     tactics: TacticsSettings = DEFAULT_TACTICS,
 ) -> Behaviour:
-    """Do what the referee wants, else the task that the team agreed on.
+    """Follow the referee's commands, else do the task in the team's plan.
 
-    Any number of robots may play it, each the same; the goalkeeper plays ``team_keeper``. Who attacks,
-    receives, covers the goal, marks or supports is agreed on anew every frame
+    Any number of robots may play it, all with the same parameters; the goalkeeper plays ``team_keeper``. The
+    team assigns attacker, receivers, wall, markers and supporters in every frame
     (:mod:`robobt.skills.tactics.agree`).
 
     Args:
         shoot_at: chance of a goal for which a shot is taken at once, 0 to 1.
         pass_at: worth for which a pass is played at once, 0 to 1.
-        patience: time in which what is demanded of both falls to its floor [s].
+        patience: time in which both thresholds fall to their floor [s].
         chips: whether passes may fly over opponents.
-        score: name or file of a model for Score, which plays on in the opponents' half while the robot has
-            the ball and neither shot nor pass is worth it; ``without="score"`` for none.
-        go: name or file of a model that drives to places among moving robots
+        score: name or file of a model for Score, which plays in the opponents' half while the robot has the
+            ball and neither shot nor pass is good enough; ``without="score"`` for none.
+        go: name or file of a model for driving to places among moving robots
             (:class:`~robobt.skills.go_to_pose.GoToPose`); empty for the planner alone.
-        open_play: name or file of a model of a task of several robots, which plays while the ball is in play,
-            whatever the robot's task, and without ``score`` and ``go``; empty for the written tasks.
-        without: a part of the game to do without, the same for every robot of the team, so that a tournament
-            shows what it is worth.
-        tactics: what the team weighs, such as ``{switch_gain: 0.5}``; what one robot is given holds for all.
+        open_play: name or file of a model for a task with several robots, which plays while the ball is in
+            play, whatever the robot's task, and replaces ``score`` and ``go``; empty for the hand-written
+            tasks.
+        without: a part of the tactics to switch off, for every robot of the team, so that a tournament
+            measures its worth.
+        tactics: settings of the team's tactics, such as ``{switch_gain: 0.5}``; settings of one robot apply
+            to all.
     """
 
     def choose() -> ChooseKick:
@@ -146,17 +148,17 @@ def attack(choose: Callable[[], ChooseKick], without: Omitted = "nothing", score
 
 
 def play_on(model: str) -> Behaviour:
-    """Play by a model, which is not told how far it may carry the ball."""
+    """Play by a model, which does not observe how far it may still carry the ball."""
     return first_of("open play", let_go(), get_where_stuck(), LearnedSkill(model=model))
 
 
 def let_go() -> Behaviour:
-    """Leave a ball that has been carried as far as is allowed."""
+    """Release a ball that has been carried as far as is allowed."""
     return when("let go", CarriedFar(limit=CARRIED), LetGo())
 
 
 def kick() -> KickToTarget:
-    """Kick as the team does: quickly, rather than to the last degree."""
+    """Kick quickly instead of to the last degree."""
     return KickToTarget(take=True, pass_tolerance=PASS_TOLERANCE)
 
 

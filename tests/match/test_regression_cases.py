@@ -149,7 +149,7 @@ def test_a_recording_without_its_scenario_is_no_case(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("change", "problem"),
     [
-        ({"format": "robobt-case"}, r"is not a regression case of robobt .*format: .*save the tick anew"),
+        ({"format": "robobt-case"}, r"is not a regression case of robobt .*format: .*save the tick again"),
         ({"version": 9}, "version: input should be 1, not 9"),
         ({"robot": "green 1"}, r"robot: string should match pattern .*, not 'green 1'"),
         ({"robot": "blue 9"}, "robot blue 9 is not in"),

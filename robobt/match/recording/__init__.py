@@ -1,7 +1,7 @@
-"""Recordings: what a match looked like and what its trees thought, in one file.
+"""Recordings: a match's frames and what its trees did, in one file.
 
-docs/recording.md describes the file and what can be asked of it. What writes and reads one is imported
-when it is first used: it needs the extra ``record``, and a match without a recording does not.
+docs/recording.md describes the file and its queries. Writer and reader are imported at first use: they need
+the extra ``record``, which a match without a recording does not.
 """
 
 from importlib import import_module

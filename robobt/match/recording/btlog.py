@@ -8,8 +8,8 @@
 | start | time of the first tick in microseconds (int64) |
 | changes | 9 bytes each: microseconds since the start (6), ``_uid`` (2), status (1) |
 
-All numbers are little-endian. Statuses: 0 idle, 1 running, 2 success, 3 failure. Times are
-simulated ones, so a match starts near 0 and not at the day it was played.
+All numbers are little-endian. Statuses: 0 idle, 1 running, 2 success, 3 failure. Times are simulated, so a
+match starts near 0 and not at the date it was played.
 """
 
 from __future__ import annotations
@@ -28,14 +28,14 @@ from robobt.world.state import RobotId
 MAGIC = b"BTCPP4-FileLogger2"
 VERSION = 1
 MOST_NODES = 2**16 - 1
-"""The most nodes whose numbers fit two bytes; they count from 1."""
+"""Most nodes whose numbers, counted from 1, fit two bytes."""
 
 _STATUSES = {"-": 0, "R": 1, "S": 2, "F": 3}
 _MODELS = {"leaf": "Action", "decorator": "Decorator", "composite": "Control"}
 
 
 def write_btlog(recording: Recording, robot: RobotId, path: str | Path) -> Path:
-    """Write what a robot's tree did, from the recording alone, and return where it is.
+    """Write the status changes of a robot's tree, from the recording alone, and return the file's path.
 
     Raises:
         KeyError: no such robot in this recording.
@@ -109,7 +109,7 @@ def _changes(recording: Recording, slot: int, start: int) -> Iterator[bytes]:
 
 def _tag(node: RecordedNode) -> str:
     if node.kind == "leaf":
-        # A skill may be called as one of BehaviorTree.CPP's leaves and be another.
+        # A skill may have the name of one of BehaviorTree.CPP's leaves without being that leaf.
         return node.type
     for tag, entry in TAGS.items():
         memory = entry.fixed.get("memory")

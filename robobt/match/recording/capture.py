@@ -1,8 +1,7 @@
-"""Takes hold of what a match is at each tick, for whoever records or shows it.
+"""Captures the state of a match at each tick, for recorders and viewers.
 
-That is done while the match waits, so it only takes what will not change later; a
-:class:`~robobt.match.recording.encoder.TickEncoder` makes sense of it, for many ticks at once
-and in any thread.
+The match waits meanwhile, so the capture only keeps objects that will not change later; a
+:class:`~robobt.match.recording.encoder.TickEncoder` encodes them, for many ticks at once and in any thread.
 """
 
 from __future__ import annotations
@@ -23,10 +22,10 @@ from robobt.world.sketch import Shape, Sketch
 from robobt.world.state import Frame, RobotId
 
 FIELD = "field"
-"""What the world itself draws is under this name, among those of the robots."""
+"""Name under which the world's own drawing is kept, beside the robots' names."""
 
 _LOOK_AGAIN = 2.0
-"""How often every node of the trees is looked at, for what one may have done to another unseen [s]."""
+"""How often every node of the trees is checked, because a node may change another unnoticed [s]."""
 
 
 @dataclass(slots=True)
@@ -34,13 +33,14 @@ class CapturedTick:
     """One tick.
 
     Attributes:
-        time: [s].
-        truth: what really was, packed from blue's side.
-        observed: what the trees were shown, likewise; the same object where that was the truth.
-        commands: what the robots were sent.
-        states: by their places the trees that may have changed.
+        time: time of the tick [s].
+        truth: the true frame, packed from blue's side.
+        observed: the frame that the trees saw, packed from blue's side; the object ``truth`` itself if they
+            are equal.
+        commands: the commands sent to the robots.
+        states: the trees that may have changed, by their places.
         written: the stores that may have changed.
-        changes: what else is new, by the names of :class:`~robobt.match.recording.stream.TickChanges`.
+        changes: all other changes, by the names of :class:`~robobt.match.recording.stream.TickChanges`.
     """
 
     time: float
@@ -53,21 +53,21 @@ class CapturedTick:
 
 
 class Capture:
-    """Takes hold of a match tick by tick and gives each to ``takers``.
+    """Captures a match tick by tick and passes each tick to ``takers``.
 
     Args:
-        header: what stays the same. The trees of its robots are taken from ``runners``.
+        header: the constant part of the recording. The trees of its robots are taken from ``runners``.
         runners: the runner of each robot whose tree is captured.
-        stores: the store of each robot of which it is captured what its skills write.
+        stores: the store of each robot whose skills' writes are captured.
 
     Attributes:
-        header: the same with the trees.
-        robots: those whose trees are captured.
-        trees: what looks at their trees.
-        stores: what looks at the stores.
-        takers: are called with each tick.
-        field: what the world itself draws.
-        layers: the names of all layers that were drawn to so far, wanted or not.
+        header: the header given, with the trees added.
+        robots: the robots whose trees are captured.
+        trees: the watchers of their trees.
+        stores: the watcher of the stores.
+        takers: functions called with each tick.
+        field: the world's own drawing.
+        layers: names of all layers used so far, captured or not.
     """
 
     def __init__(
@@ -97,7 +97,7 @@ class Capture:
         self._ticks, self._round = 0, max(1, round(_LOOK_AGAIN / header.period))
 
     def change_tree(self, before: TreeRunner, after: TreeRunner) -> bool:
-        """Look at another tree in place of one; False where it has other nodes, which nobody expects."""
+        """Watch another tree in place of one; return False if its nodes differ from the header's."""
         for place, watch in enumerate(self.trees.each):
             if watch.runner is before:
                 if _shape(before) != _shape(after):
@@ -113,15 +113,15 @@ class Capture:
         observed: Frame | None = None,
         packed: bytes | None = None,
     ) -> None:
-        """Take one frame, the commands decided on it and what the trees look like now.
+        """Take one frame, the commands decided on it and the trees' present state.
 
         Robots that the header does not list are left out.
 
         Args:
-            frame: what really was.
-            commands: what the robots were sent.
-            observed: what the trees were shown where that was something else.
-            packed: the frame from blue's side, where it has been packed already.
+            frame: the true frame.
+            commands: the commands sent to the robots.
+            observed: the frame that the trees saw, if it differs.
+            packed: the frame packed from blue's side, if it has been packed already.
         """
         if self._ticks == self._round:
             self._ticks = 0
@@ -146,7 +146,7 @@ class Capture:
             frame.time,
             truth,
             truth if observed is None else observed.seen_by(Team.BLUE).packed(),
-            # They are made anew every tick, so it is enough to keep them.
+            # They are new objects in every tick, so keeping references is enough.
             commands or {},
             self.trees.look(),
             self.stores.look(),
@@ -156,7 +156,7 @@ class Capture:
             take(tick)
 
     def look(self, who: object, layers: Container[str]) -> None:
-        """Let skills draw the layers that one of those who look at this wants, from now on."""
+        """Enable drawing in the layers that a viewer wants, from now on."""
         self._lookers[who] = layers
         wanted = _Layers([each for each in self._lookers.values() if each])
         self._looked_at = bool(wanted.of)
@@ -172,7 +172,7 @@ class Capture:
         robot: RobotId | None = None,
         text: str = "",
     ) -> None:
-        """Take that something happened at ``time`` [s], with the next tick; the words are those of `Event`.
+        """Add an event at ``time`` [s] to the next tick; the arguments are the fields of `Event`.
 
         The referee's commands, the score and a tree that raised need no event of their own:
         :meth:`tick` sees them in the frame and in the runners.
@@ -182,7 +182,7 @@ class Capture:
         self._events.append(Event(round(time, 6), kind, team, robot, text))
 
     def _take_drawn(self) -> dict[str, list[Shape]]:
-        """Return what is drawn otherwise than at the tick before, by who drew it."""
+        """Return the drawings that changed since the last tick, by who drew them."""
         drawn = {}
         for name, sketch in self._sketches.items():
             shapes = sketch.take()
@@ -195,14 +195,14 @@ class Capture:
         return drawn
 
     def events_left(self) -> list[Event]:
-        """Return the events that no tick has taken yet, which none will then."""
+        """Return, and remove, the events that no tick has taken yet."""
         events, self._events = self._events, []
         return events
 
 
 @dataclass(slots=True, frozen=True)
 class _Layers:
-    """The layers that anybody wants."""
+    """The layers that any viewer wants."""
 
     of: list[Container[str]]
 

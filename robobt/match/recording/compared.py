@@ -1,4 +1,4 @@
-"""What a recording tells of a team's mind: the passes that robots compared, marks and threats."""
+"""A team's plan as a recording shows it: the passes that robots compared, marks and threats."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ from robobt.match.recording.stores import plain
 from robobt.skills.store import Pass
 
 CANDIDATES = "candidates"
-"""The store's entry with the passes that were compared."""
+"""Store entry with the compared passes."""
 
 Written: TypeAlias = Timeline[dict[str, JsonValue]]
-"""What skills wrote, by tick and entry."""
+"""Values that skills wrote, by tick and entry."""
 
 
 def candidates(changes: Written) -> Iterator[tuple[int, list[JsonValue]]]:
-    """Give the passes that a robot compared, the best first: x, y [m] and score of each."""
+    """Return the passes that a robot compared, the best first: x, y [m] and score of each."""
     for tick, change in changes:
         if CANDIDATES not in change:
             continue
@@ -29,13 +29,13 @@ def candidates(changes: Written) -> Iterator[tuple[int, list[JsonValue]]]:
             if any(len(row) != 3 or None in row for row in rows):  # type: ignore[arg-type, operator]
                 raise ValueError("no pass to a place")
         except (TypeError, ValueError):
-            # Some other skill's idea of it, which the page shows nothing of.
+            # Another skill wrote this entry in its own form, which the page does not show.
             rows = []
         yield tick, rows
 
 
 class Plans:
-    """What a team plans, as it follows from what its skills have written so far."""
+    """A team's plan, derived from the values that its skills have written so far."""
 
     def __init__(self) -> None:
         self._marks: dict[int, int] = {}
@@ -44,10 +44,10 @@ class Plans:
         self._meeting: list[float] = []
 
     def follow(self, changes: Written) -> Iterator[tuple[int, list[object]]]:
-        """Give whom it marks, by the marker's number, and whom it fears, the most dangerous first.
+        """Return the marked opponents by the marker's number, and the threats, the most dangerous first.
 
-        Then its attacker's number and where that is to meet the rolling ball, x and y [m]; nothing
-        without one.
+        The attacker's number and its meeting point with the rolling ball, x and y [m], follow if there is
+        one.
         """
         for tick, change in changes:
             if not {"marks", "threats", "attacker", "meeting"} & change.keys():

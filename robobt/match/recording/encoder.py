@@ -1,4 +1,4 @@
-"""Makes the rows of a recording of captured ticks."""
+"""Encodes captured ticks as rows of a recording."""
 
 from __future__ import annotations
 
@@ -25,11 +25,11 @@ class EncodedTicks:
     """Some ticks as the columns of a recording.
 
     Attributes:
-        times: [s].
-        truth: as the column of that name.
-        observed: likewise; the same object as ``truth`` where all of it was shown as it is.
-        commands: as the column of that name.
-        changes: for each tick what changed, by the names of
+        times: times of the ticks [s].
+        truth: values of the column ``truth``.
+        observed: values of the column ``observed``; the object ``truth`` itself if all ticks are equal.
+        commands: values of the column ``commands``.
+        changes: the changes of each tick, by the names of
             :class:`~robobt.match.recording.stream.TickChanges`.
     """
 
@@ -47,18 +47,18 @@ class EncodedTicks:
             self.truth,
             pa.nulls(len(texts), self.truth.type) if self.observed is self.truth else self.observed,
             self.commands,
-            # What is no Unicode text, as half a surrogate pair, becomes a question mark.
+            # Invalid Unicode, such as half a surrogate pair, becomes a question mark.
             pa.array([text and text.encode("utf-8", "replace") for text in texts], pa.string()),
         ]
         return pa.RecordBatch.from_arrays(columns, COLUMNS)
 
 
 class TickEncoder:
-    """Encodes the ticks of a capture, all of them and in their order.
+    """Encodes all ticks of a capture, in order.
 
     Args:
-        capture: what the ticks are of.
-        layers: what is kept of what others may have let skills draw; None for all of it.
+        capture: the capture that the ticks come from.
+        layers: layers to keep, as other viewers may have enabled more; None for all.
     """
 
     def __init__(self, capture: Capture, layers: Container[str] | None = None) -> None:
@@ -85,7 +85,7 @@ class TickEncoder:
         )
 
     def _changes(self, tick: CapturedTick) -> dict[str, Any]:
-        # Another encoder reads the same ticks.
+        # Another encoder reads the same ticks, so they must not be changed.
         changes = dict(tick.changes)
         for place, state in tick.states:
             robot, name, tree = self._trees[place]

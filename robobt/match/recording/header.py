@@ -1,4 +1,4 @@
-"""What stays the same during a recording, and what is wrong with a file that is none."""
+"""The constant part of a recording, and the error for files that are no recording."""
 
 from __future__ import annotations
 
@@ -24,13 +24,13 @@ VERSION = 4
 
 
 class RecordingError(RobobtError, ValueError):
-    """A file is not a recording that can be read.
+    """A file cannot be read as a recording.
 
     Attributes:
         path: the file.
-        problem: what is wrong, in words.
-        tick: where in it, from 0; None when the file as a whole is meant.
-        field: what is wrong there.
+        problem: description of the error.
+        tick: number of the faulty tick, from 0; None if the error concerns the whole file.
+        field: the faulty field.
     """
 
     def __init__(self, path: Path, problem: str, tick: int | None = None, field: str | None = None) -> None:
@@ -40,12 +40,12 @@ class RecordingError(RobobtError, ValueError):
 
 
 class RobotFlag(IntFlag):
-    """What else is known of a robot at one tick."""
+    """Flags of a robot at one tick."""
 
     BALL_CONTACT = 1
-    """The ball lies in its mouth."""
+    """The ball is in its mouth."""
     DRIBBLER = 2
-    """Its command turns the dribbler."""
+    """Its command turns the dribbler on."""
     KICK = 4
     """Its command asks for a kick."""
     KICK_NOW = 8
@@ -62,9 +62,9 @@ class RecordedNode(Settings):
     type: str = Field(description="name of the node's class")
     kind: NodeKind
     depth: int = Field(ge=0, description="0 at the root")
-    glyph: str = Field("", description="the sign of a composite or decorator")
+    glyph: str = Field("", description="the symbol of a composite or decorator")
     detail: str = Field("", description="memory or reactive, a policy, or parameters")
-    condition: bool = Field(False, description="whether it only looks: that it fails is nothing amiss")
+    condition: bool = Field(False, description="whether it is a condition, whose failure is no fault")
 
 
 class RecordedRobot(Settings):
@@ -72,10 +72,10 @@ class RecordedRobot(Settings):
 
     team: Team
     number: int = Field(ge=0)
-    play: str = Field("", description="what it plays, as people call it")
+    play: str = Field("", description="display name of its play")
     radius: float = Field(ROBOT_RADIUS, gt=0, le=1, description="[m]")
     mouth: float = Field(0.075, gt=0, le=1, description="centre to flat front [m]")
-    limits: RobotLimits = Field(DEFAULT_LIMITS, description="what its tree is told it can do")
+    limits: RobotLimits = Field(DEFAULT_LIMITS, description="the robot's limits as its tree sees them")
     tree: tuple[RecordedNode, ...] = Field((), description="filled in by the recorder")
 
     @property
@@ -93,18 +93,18 @@ class RecordedRobot(Settings):
 
 
 class RecordingHeader(Settings):
-    """What stays the same during a recording."""
+    """The constant part of a recording."""
 
     scenario: str = Field("", description="name of the scenario")
-    trial: int = Field(0, ge=0, description="which repetition of the scenario, from 0")
+    trial: int = Field(0, ge=0, description="number of the trial, from 0")
     seed: int = Field(0, description="the trial's seed, from which all its randomness follows")
     played: dict[str, Any] = Field(
         default_factory=dict, description="the whole scenario as data; with the seed it repeats the trial"
     )
     period: float = Field(gt=0, le=10, description="control period [s]")
     field: FieldGeometry
-    ball_model: BallModel = Field(DEFAULT_BALL, description="what trees are told of how the ball moves")
-    teams: dict[Team, str] = Field(default_factory=dict, description="what the teams are called")
+    ball_model: BallModel = Field(DEFAULT_BALL, description="the ball model that trees see")
+    teams: dict[Team, str] = Field(default_factory=dict, description="names of the teams")
     robots: tuple[RecordedRobot, ...] = Field((), max_length=64)
     robobt: str = Field(__version__, description="version of robobt that recorded it")
 
@@ -119,10 +119,10 @@ class RecordingHeader(Settings):
 
 @dataclass(slots=True, frozen=True)
 class Event:
-    """Something worth a mark on the timeline.
+    """An event marked on the timeline.
 
-    ``kind`` is "goal", "kick", "save", "out", "error" or any other word; ``text`` says what happened, for
-    people; ``time`` is in seconds; ``team`` and ``robot`` are whose it is, as far as known.
+    ``kind`` is "goal", "kick", "save", "out", "error" or any other word; ``text`` describes what happened;
+    ``time`` is in seconds; ``team`` and ``robot`` are who caused it, if known.
     """
 
     time: FiniteFloat

@@ -17,15 +17,15 @@ from robobt.world.geometry import FloatArray
 from robobt.world.state import RobotId
 
 BALL = 6
-"""Numbers of the ball: x, y, vx, vy, z, vz."""
+"""Values per ball: x, y, vx, vy, z, vz."""
 
 POSE = 7
-"""Numbers of a robot: x, y, heading, vx, vy, omega, whether the ball lies in its mouth."""
+"""Values per robot: x, y, heading, vx, vy, omega, whether the ball is in its mouth."""
 
 COMMAND = 6
-"""Numbers of a command: vx, vy, omega, kick speed, kick angle, flags."""
+"""Values per command: vx, vy, omega, kick speed, kick angle, flags."""
 
-# Powers of two, for the bits of a number that are zero cost no space in the file.
+# Powers of two, because zero bits of a number take no space in the file.
 _BALL_STEPS = (2**-16, 2**-16, 2**-10, 2**-10, 2**-16, 2**-10)
 _POSE_STEPS = (2**-16, 2**-16, 2**-14, 2**-13, 2**-13, 2**-10, 1.0)
 _COMMAND_STEPS = (2**-10, 2**-10, 2**-10, 2**-10, 2**-14, 1.0)
@@ -35,11 +35,11 @@ _NO_COMMAND = RobotCommand()
 
 
 class TickNumbers:
-    """Makes the columns of a recording, of these robots in this order."""
+    """Makes the columns of a recording for these robots in this order."""
 
     def __init__(self, robots: Sequence[RobotId]) -> None:
         self._slots = {robot: slot for slot, robot in enumerate(robots)}
-        # As a match lists its commands, to look none of them up.
+        # In the order in which a match lists its commands, so that none has to be looked up.
         self._usual = sorted(robots, key=lambda robot: (robot.team is Team.YELLOW, robot.number))
 
     def poses(self, frames: Sequence[bytes]) -> pa.Array:
@@ -65,7 +65,7 @@ class TickNumbers:
                 at_once, commanded = it.kick_trigger is now, it is not _NO_COMMAND
                 numbers += (it.vx, it.vy, it.omega, it.kick_speed, it.kick_angle)
                 numbers += (it.dribbler, at_once, commanded)
-        # Several times as fast as numpy makes an array of a list.
+        # This is several times as fast as making an array of a list with numpy.
         packed = np.frombuffer(pack(f"={len(numbers)}d", *numbers)).reshape(len(sent), len(usual), 8)
         cells = packed[:, [usual.index(robot) for robot in self._slots]]
         dribbling, at_once, commanded = [cells[:, :, i] != 0.0 for i in (5, 6, 7)]
@@ -80,17 +80,17 @@ class TickNumbers:
         return _column(table.reshape(len(sent), -1), _COMMAND_STEPS * len(usual))
 
     def _fill(self, table: FloatArray, ticks: list[int], packed: FloatArray) -> None:
-        """Enter packed frames of so many robots (frames, numbers) into the rows of their ticks."""
+        """Enter packed frames (frames, numbers) with this many robots into the rows of their ticks."""
         own = int(packed[0, 5])
         robots = (packed.shape[1] - 7) // 8
         places = [6 + 8 * i + (i >= own) for i in range(robots)]
         numbers = packed[:, [5, *places]]
         if (numbers != numbers[0]).any():
-            # As many robots, but others.
+            # The same number of robots, but different robots.
             for i, tick in enumerate(ticks):
                 self._fill(table, [tick], packed[i : i + 1])
             return
-        # A ball on the ground has no height in it.
+        # Frames with the ball on the ground have no height.
         flying = packed.shape[1] - 7 > 8 * robots
         columns, taken = [*range(BALL if flying else 4)], [*range(1, 5)]
         if flying:
@@ -107,13 +107,13 @@ class TickNumbers:
 
 
 def numbers_of(column: pa.FixedSizeListArray) -> NDArray[np.float32]:
-    """Return the table (ticks, numbers) of such a column; what no column of ours holds is unknown."""
+    """Return the table (ticks, numbers) of such a column; values that robobt never writes become unknown."""
     table = column.flatten().to_numpy(zero_copy_only=False).reshape(len(column), column.type.list_size)
     return np.where(np.abs(table) < _FARTHEST, table, np.float32(np.nan))
 
 
 def _column(table: FloatArray, steps: tuple[float, ...]) -> pa.Array:
-    """Return the column of a table (ticks, numbers), rounded to what is kept of them."""
+    """Return the column of a table (ticks, numbers), rounded to the precision of a recording."""
     kept = np.where(np.abs(table) < _FARTHEST, table, nan)
     rounded = (np.rint(kept / steps) * steps).astype(np.float32)
     kind = pa.list_(pa.float32(), len(steps))

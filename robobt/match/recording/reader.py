@@ -19,28 +19,28 @@ from robobt.world.sketch import Shape
 from robobt.world.state import RobotId
 
 MOST_TEXT = 32 * 2**20
-"""The most text that is read, which takes many times as much as Python's objects [bytes]."""
+"""Largest text that is read, because Python's objects take many times its size [bytes]."""
 
 _FEW_VALUES, _BYTES_PER_VALUE = 100_000, 8
-"""Values in the text that any file may hold, and bytes of the file for each one more; ours have about 30."""
+"""Values of text that any file may hold, and bytes of the file per further value; robobt writes about 30."""
 
 _LONGEST = 1e9
-"""The latest time [s]."""
+"""Latest time allowed [s]."""
 
 
 def load_recording(path: str | Path) -> Recording:
-    """Read the recording in the file ``path``; one that was cut off, up to its last whole batch.
+    """Read the recording in the file ``path``; a truncated file is read up to its last complete batch.
 
     Raises:
-        RecordingError: the file cannot be read, is no recording, or a part of it is not what
-            it should be; the message names the file, the tick and the field.
+        RecordingError: the file cannot be read, is no recording, or has an invalid part; the message names
+        the file, the tick and the field.
     """
     path = Path(path)
     return parse_recording(read_bytes(path), path)
 
 
 def parse_recording(data: bytes, path: Path) -> Recording:
-    """Read a recording that is in memory; ``path`` is what messages call it."""
+    """Read a recording in memory; ``path`` is its name in messages."""
     header, batches = open_stream(data, path)
     reader = _Reader(path, header, _FEW_VALUES + len(data) // _BYTES_PER_VALUE)
     for batch in batches:
@@ -90,7 +90,7 @@ class _Reader:
         self._ticks += len(batch)
 
     def recording(self) -> Recording:
-        """Return the whole."""
+        """Return the whole recording."""
         times = np.concatenate(self._times)
         late = np.flatnonzero(~((times >= np.append(-np.inf, times[:-1])) & (np.abs(times) < _LONGEST)))
         if late.size:
@@ -165,7 +165,7 @@ class _Reader:
 
 
 def poses_of(tables: list[NDArray[np.float32]], count: int) -> Poses:
-    """Return the poses of tables (ticks, numbers) of so many robots; what is not wholly known is unknown."""
+    """Return the poses in tables (ticks, numbers) of this many robots; a partly unknown pose is unknown."""
     table = np.concatenate(tables)
     ball = table[:, :BALL]
     robots = table[:, BALL:].reshape(len(table), count, POSE)

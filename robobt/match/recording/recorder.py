@@ -2,8 +2,8 @@
 
 The file is a stream of Arrow record batches, one a second of play, and is only ever
 appended to: a match that was killed leaves a file that can be read up to its last whole
-batch. :mod:`robobt.match.recording.stream` has the columns. What a tick costs is kept down
-by doing the work of many ticks at once, where they are written.
+batch. :mod:`robobt.match.recording.stream` has the columns. Ticks are cheap because many are encoded at once,
+when they are written.
 """
 
 from __future__ import annotations
@@ -27,10 +27,10 @@ from robobt.tree import TreeRunner
 from robobt.world.state import RobotId
 
 _FLUSH_PERIOD = 1.0
-"""What a killed match loses at most [s]."""
+"""Longest play that a killed match loses [s]."""
 
 _BUFFER = 2**20
-"""Arrow writes a batch in many pieces, which go to the file as one [bytes]."""
+"""Buffer that joins the many small writes of an Arrow batch [bytes]."""
 
 
 class Recorder:
@@ -38,13 +38,13 @@ class Recorder:
 
     Args:
         path: file to write, replaced when it exists.
-        header: what stays the same, or the capture of a match that has it.
-        runners: the runner of each robot whose tree is recorded; of a capture its own.
-        stores: the store of each robot of which it is recorded what its skills write; likewise.
-        layers: what skills draw in these is recorded.
+        header: the constant part of the recording, or the capture of a match that has it.
+        runners: the runner of each robot whose tree is recorded; not used with a capture.
+        stores: the store of each robot whose skills' writes are recorded; not used with a capture.
+        layers: drawing layers of skills to record.
 
     Attributes:
-        capture: what is recorded.
+        capture: the capture that is recorded.
         tick: see :meth:`Capture.tick`.
         event: see :meth:`Capture.event`.
     """
@@ -63,9 +63,9 @@ class Recorder:
         self.tick, self.event = self.capture.tick, self.capture.event
         self._encoder = TickEncoder(self.capture, layers)
         self.capture.look(self, layers)
-        # What is still to be written.
+        # Ticks still to be written.
         self._ticks: list[CapturedTick] = []
-        # Few enough writes, and a kill loses no more than that.
+        # One batch a second keeps writes few, and a killed match loses no more than that.
         self._most_ticks = max(1, round(_FLUSH_PERIOD / self.header.period))
         self.path.parent.mkdir(parents=True, exist_ok=True)
         with naming(self.path):
@@ -91,7 +91,7 @@ class Recorder:
     def close(self, outcome: Mapping[str, object]) -> None:
         """Write the outcome, any mapping that JSON can hold, and close the file.
 
-        It belongs to the last tick; a recording without one stays incomplete.
+        The outcome belongs to the last tick; a recording without an outcome stays incomplete.
         """
         self._add_to_last({"outcome": plain(outcome)})
         self._release()
@@ -104,11 +104,11 @@ class Recorder:
     def _add_to_last(self, changes: dict[str, object]) -> None:
         if self._ticks:
             last = self._ticks[-1]
-            # Others may hold this tick as well.
+            # Other takers may hold this tick as well.
             self._ticks[-1] = replace(last, changes={**last.changes, **changes})
 
     def _flush(self) -> None:
-        """Write the ticks that wait for it."""
+        """Write the waiting ticks."""
         if not self._ticks:
             return
         batch = self._encoder.encode(self._ticks).batch()
@@ -136,7 +136,7 @@ class Recorder:
             raise
 
     def _discard(self) -> None:
-        """Close the file, which cannot be written, and remove the piece of it that is there."""
+        """Close a file that cannot be written, and remove its incomplete part."""
         atexit.unregister(self._release)
         # What is buffered cannot be written either.
         with suppress(OSError):

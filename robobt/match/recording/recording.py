@@ -1,4 +1,4 @@
-"""A match that was recorded: what can be asked of it."""
+"""A recorded match and its queries."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ T = TypeVar("T")
 K = TypeVar("K")
 
 Timeline: TypeAlias = list[tuple[int, T]]
-"""Values by the tick from which on they hold."""
+"""Values by the tick from which they hold."""
 
 
 @dataclass(slots=True)
@@ -32,7 +32,7 @@ class Poses:
     Attributes:
         ball: (T, 6) x, y [m], vx, vy [m/s], z [m], vz [m/s]; NaN where it was not known.
         robots: (T, K, 6) x, y [m], heading [rad], vx, vy [m/s], omega [rad/s]; NaN off the field.
-        contact: (T, K) whether the ball lay in the robot's mouth.
+        contact: (T, K) whether the ball was in the robot's mouth.
     """
 
     ball: NDArray[np.float32]
@@ -42,30 +42,30 @@ class Poses:
 
 @dataclass(slots=True)
 class Recording:
-    """A match that was recorded, in world coordinates (blue defends -x).
+    """A recorded match, in world coordinates (blue defends -x).
 
-    T is the number of ticks, K that of robots in the header. A robot that is not in the recording
-    is a :exc:`KeyError`, a tick at which there is no frame or command an :exc:`IndexError`.
+    T is the number of ticks, K the number of robots in the header. Asking for a robot that is not in the
+    recording raises :exc:`KeyError`, for a tick without frame or command :exc:`IndexError`.
 
     Attributes:
         path: the file.
-        header: what stayed the same.
-        times: (T,) [s], never decreasing.
-        truth: what really was.
-        observed: what the trees were shown, None where that was the truth at every tick.
+        header: the constant part of the recording.
+        times: (T,) times of the ticks [s], never decreasing.
+        truth: the true frames.
+        observed: the frames that the trees saw, None if they were the true ones at every tick.
         flags: (T, K) :class:`RobotFlag`.
         commands: (T, K, 5) vx, vy [m/s], omega [rad/s], kick speed [m/s], kick angle [rad], in the
-            robot's own frame; 0 where it was sent none.
-        letters: for each robot one letter a node whenever its tree changed: S, F, R of a node that
-            was ticked, s, f, r where it kept the status of an earlier tick, - without.
+            robot's own frame; 0 where no command was sent.
+        letters: for each robot one letter per node whenever its tree changed: S, F, R for a node that was
+            ticked, s, f, r for a status kept from an earlier tick, - for no status.
         feedback: for each robot the new feedback of nodes, by their place.
-        written: by robot ("blue 3") or team ("blue") what skills wrote anew into that store, by entry.
-        drawn: by robot what its skills drew in the layers that were recorded, in its team's view, and by
-            "field" what the world did, whenever that changed; see :mod:`robobt.world.sketch`.
-        games: what the referee said, whenever that changed.
-        touches: who touched the ball last, whenever that changed.
-        events: in the order they were recorded.
-        outcome: what the match ended with, None when its recorder was not closed.
+        written: new values that skills wrote into a store, by robot ("blue 3") or team ("blue") and entry.
+        drawn: by robot the changed drawings of its skills in the recorded layers, in its team's view, and by
+            "field" those of the world; see :mod:`robobt.world.sketch`.
+        games: the referee's state, whenever it changed.
+        touches: the robot that touched the ball last, whenever it changed.
+        events: events in the order of recording.
+        outcome: the outcome of the match, None if its recorder was not closed.
     """
 
     path: Path
@@ -86,12 +86,12 @@ class Recording:
 
     @property
     def complete(self) -> bool:
-        """Whether the recording reached its end; a killed match's did not."""
+        """Whether the recording reached its end; the recording of a killed match did not."""
         return self.outcome is not None
 
     @property
     def statuses(self) -> list[Timeline[str]]:
-        """For each robot one letter a node (S, F, R, - without) whenever a status changed."""
+        """For each robot one letter per node (S, F, R, or - for no status) whenever a status changed."""
         return [
             _without_repeats([(tick, letters.upper()) for tick, letters in tree]) for tree in self.letters
         ]
@@ -100,15 +100,15 @@ class Recording:
         return len(self.times)
 
     def frame(self, tick: int) -> Frame:
-        """Return what was on the field at a tick, from blue's side, as exactly as the file holds it."""
+        """Return the true frame at a tick, from blue's side, with the file's precision."""
         return self._frame(tick, self.truth)
 
     def observation(self, tick: int) -> Frame:
-        """Return what the trees were shown at a tick, from blue's side, as exactly as the file holds it."""
+        """Return the frame that the trees saw at a tick, from blue's side, with the file's precision."""
         return self._frame(tick, self.observed or self.truth)
 
     def command(self, robot: RobotId, tick: int) -> RobotCommand | None:
-        """Return what the robot was sent at a tick, None if nothing."""
+        """Return the command sent to the robot at a tick, or None."""
         slot = self.slot(robot)
         flags = RobotFlag(int(self.flags[tick, slot]))
         if RobotFlag.COMMANDED not in flags:
@@ -118,25 +118,25 @@ class Recording:
         return RobotCommand(vx, vy, omega, kick, trigger, RobotFlag.DRIBBLER in flags, angle)
 
     def letters_at(self, robot: RobotId, tick: int) -> str:
-        """Return one letter a node of the robot's tree at a tick, as in :attr:`letters`."""
+        """Return one letter per node of the robot's tree at a tick, as in :attr:`letters`."""
         return _latest(self.letters[self.slot(robot)], tick, "-" * len(self.nodes(robot)))
 
     def statuses_at(self, robot: RobotId, tick: int) -> str:
-        """Return one letter a node of the robot's tree at a tick (S, F, R, -), in the order of its header."""
+        """Return one letter per node of the robot's tree at a tick (S, F, R, -), in the header's order."""
         return self.letters_at(robot, tick).upper()
 
     def ticked_path(self, robot: RobotId, tick: int) -> list[str]:
-        """Return the ids of a robot's nodes that ran at a tick and had a status then, parents first."""
+        """Return the ids of a robot's nodes that were ticked and had a status at a tick, parents first."""
         letters = self.letters_at(robot, tick)
         return [node.path for node, it in zip(self.nodes(robot), letters, strict=True) if it in "SFR"]
 
     def feedback_at(self, robot: RobotId, tick: int) -> dict[int, str]:
-        """Return the last feedback up to a tick of a robot's nodes that have a status, by their place."""
+        """Return, by place, the last feedback up to a tick of a robot's nodes that have a status."""
         feedback = _gathered(self.feedback[self.slot(robot)], tick)
         return {place: text for place, text in feedback.items() if text}
 
     def failures_at(self, robot: RobotId, tick: int) -> dict[str, str]:
-        """Return the robot's nodes that failed at a tick by their ids, each with the reason that it gave."""
+        """Return the robot's nodes that failed at a tick, by id, each with its reason."""
         letters, feedback = self.letters_at(robot, tick), self.feedback_at(robot, tick)
         return {
             node.path: feedback.get(place, "")
@@ -145,10 +145,10 @@ class Recording:
         }
 
     def written_at(self, owner: RobotId | Team, tick: int) -> dict[str, JsonValue]:
-        """Return what skills have written until a tick, by entry.
+        """Return the values that skills have written up to a tick, by entry.
 
-        ``owner`` is a robot, for its store, or a team, for what its robots share. Places and directions
-        are in the view of that team, its own goal at -x.
+        ``owner`` is a robot, for its store, or a team, for the shared store. Places and directions are in
+        that team's view, with its own goal at -x.
         """
         if not isinstance(owner, Team):
             self.slot(owner)
@@ -163,7 +163,7 @@ class Recording:
         raise KeyError(f"robot {robot} is not in {self.path}; there are {there}")
 
     def nodes(self, robot: RobotId) -> tuple[RecordedNode, ...]:
-        """Return the nodes of the robot's tree, parents first; none where no tree was recorded."""
+        """Return the nodes of the robot's tree, parents first; none if no tree was recorded."""
         return self.header.robots[self.slot(robot)].tree
 
     def _frame(self, tick: int, poses: Poses) -> Frame:

@@ -1,4 +1,4 @@
-"""What the teams did in a recorded match."""
+"""Team statistics of a recorded match."""
 
 from __future__ import annotations
 
@@ -8,10 +8,9 @@ from robobt.world.game import OPEN_PLAY
 
 
 def recorded_statistics(recording: Recording) -> dict[str, TeamResult]:
-    """Count what each team did, by its name; nothing where no referee watched.
+    """Return each team's statistics by its name; an empty mapping without a referee.
 
-    The frames are as exact as the file holds them, so that a contact that was close may count otherwise
-    than in the match itself.
+    The frames have the file's precision, so a narrow contact may count differently than in the match itself.
     """
     if all(game == OPEN_PLAY for _, game in recording.games):
         return {}

@@ -1,4 +1,4 @@
-"""What skills write into their stores, as plain data, whenever it changes."""
+"""Changes that skills make to their stores, as plain data."""
 
 from __future__ import annotations
 
@@ -26,18 +26,17 @@ _CHANGEABLE = frozenset((list, set, dict))
 
 
 Written: TypeAlias = tuple[int, object]
-"""An entry by its place, and what it holds."""
+"""An entry's place, and its value."""
 
 
 class StoreWatch:
-    """Finds what has changed in some stores since they were looked at last.
+    """Finds the changes in stores since the last check.
 
-    Looking is quick and can be done at every tick; :class:`StoreChanges` makes plain data of what
-    was found. A value that is changed in place is noticed in lists, sets and mappings.
+    A check is quick enough for every tick; :class:`StoreChanges` converts the changes to plain data. Changes
+    in place are noticed in lists, sets and mappings.
 
     Args:
-        stores: by a name each the store and the names of its entries to look at; an entry that
-            is missing counts as None.
+        stores: by name, each store with the names of the entries to watch; a missing entry counts as None.
 
     Attributes:
         entries: the names of store and entry at each place.
@@ -48,20 +47,20 @@ class StoreWatch:
         self._stores = [stores[name][0] for name, _ in self.entries]
         items = [f"'{place}'.{entry}," for place, (_, entry) in enumerate(self.entries)]
         self._read = make_reader(f"[{''.join(items)}]", self._stores)
-        # As of the last look; of what may be changed in place a copy.
+        # Values at the last check, copied where they can be changed in place.
         self._before: list[object] = [None] * len(self.entries)
 
     def look(self) -> list[Written]:
-        """Return the entries that are not what they were at the last look."""
+        """Return the entries that have changed since the last check."""
         before = self._before
         try:
-            # All of them at once, which is what they usually are.
+            # Compare all at once first, because usually nothing has changed.
             values = self._read()
             if values == before:
                 return []
             places = [*compress(count(), map(ne, values, before))]
         except Exception:
-            # An entry that is not there, or values that do not compare to a truth, as arrays.
+            # An entry is missing, or values such as arrays do not compare to a boolean.
             pairs = zip(self._stores, self.entries, strict=True)
             values = [getattr(store, entry, None) for store, (_, entry) in pairs]
             places = [place for place in range(len(values)) if _differ(values[place], before[place])]
@@ -79,14 +78,14 @@ def _differ(now: object, before: object) -> bool:
 
 
 class StoreChanges:
-    """Makes plain data of what a :class:`StoreWatch` finds, at any later time but in the same order."""
+    """Converts what a :class:`StoreWatch` finds to plain data, at any later time but in order."""
 
     def __init__(self, watch: StoreWatch) -> None:
         self._entries = watch.entries
         self._plain: list[JsonValue] = [None] * len(self._entries)
 
     def plain(self, written: list[Written]) -> dict[str, dict[str, JsonValue]]:
-        """Return by store and entry what is new in ``written``."""
+        """Return the new values in ``written``, by store and entry."""
         changed: dict[str, dict[str, JsonValue]] = {}
         for place, value in written:
             now = plain(value)
@@ -97,9 +96,9 @@ class StoreChanges:
 
 
 def stores_of(runners: Mapping[RobotId, TreeRunner], stores: Mapping[RobotId, Store]) -> StoreWatch:
-    """Watch what the skills of robots write, by "blue 3", and what they share, by "blue" and "yellow".
+    """Watch the robots' stores, named "blue 3", and the teams' shared stores, "blue" and "yellow".
 
-    Of a robot's store that is what its nodes declare under ``writes``, of a team's everything
+    In a robot's store the entries that its nodes declare under ``writes`` are watched; in a team's store all
     but frames, which a recording has anyway.
     """
     watched: dict[str, tuple[object, Sequence[str]]] = {}
@@ -143,10 +142,10 @@ def _plain(value: object, depth: int) -> JsonValue:
     if isinstance(value, Mapping):
         return {text_of(key): plain(item, depth) for key, item in [*value.items()][:_MOST_ITEMS]}
     if isinstance(value, set | frozenset):
-        # Sorted, for the same match gives the same file.
+        # Sorted, so that the same match gives the same file.
         return sorted([plain(item, depth) for item in value], key=repr)[:_MOST_ITEMS]
     if hasattr(value, "tolist"):
         return plain(value.tolist(), depth)
     text = text_of(value)
-    # A default repr holds an address, which would differ from run to run.
+    # A default repr contains an address, which differs between runs.
     return plain(f"a {type(value).__name__}" if " at 0x" in text else text)

@@ -1,4 +1,4 @@
-"""The table that a recording is: a row a tick, as a stream of Arrow record batches.
+"""The table of a recording: one row per tick, as a stream of Arrow record batches.
 
 | column | holds |
 | --- | --- |
@@ -8,8 +8,8 @@
 | ``commands`` | each robot's vx, vy, omega, kick speed, kick angle, :class:`RobotFlag` |
 | ``changes`` | what else changed: :class:`TickChanges` as JSON, null for nothing |
 
-Numbers are in SI units and world coordinates; NaN stands for what is not known. The header
-is JSON in the schema's metadata.
+Numbers are in SI units and world coordinates; NaN means unknown. The header is JSON in the schema's
+metadata.
 """
 
 from __future__ import annotations
@@ -44,10 +44,10 @@ COLUMNS = ("time", "truth", "observed", "commands", "changes")
 _FORMAT, _VERSION, _HEADER = b"format", b"version", b"header"
 
 MOST_BYTES = 200 * 2**20
-"""The most that is read, unpacked: an hour of play of six a side."""
+"""Largest unpacked size that is read: an hour of play with six robots a side."""
 
 _SMALL, _RATIO = 24 * 2**20, 10
-"""What any file may unpack to [bytes], and how many times its own size; ours are packed to a third."""
+"""Unpacked size allowed for any file [bytes], and as a multiple of its size; robobt packs to a third."""
 
 _FOREIGN = "is not a robobt recording"
 
@@ -61,34 +61,34 @@ _Letters = Annotated[str, StringConstraints(pattern="^[SFRsfr-]*$")]
 
 
 class TickChanges(BaseModel):
-    """What changed at a tick, or happened up to it; robots are called "blue 3"."""
+    """Changes and events at one tick; robots are named "blue 3"."""
 
     model_config = ConfigDict(extra="forbid")
 
     statuses: dict[str, _Letters] = Field(
         {},
-        description="by robot one letter a node: S, F, R when it was ticked, s, f, r when it was not and "
-        "kept its status, - without one",
+        description="by robot, one letter per node: S, F, R if it was ticked, s, f, r if it kept an earlier "
+        "status, - without a status",
     )
     feedback: dict[str, dict[int, str]] = Field(
-        {}, description="by robot and place of the node; it counts while the node has a status"
+        {}, description="by robot and place of the node; valid while the node has a status"
     )
     written: dict[str, dict[str, JsonValue]] = Field(
-        {}, description='what skills wrote into their stores, by robot, or "blue" and "yellow", and entry'
+        {}, description='values that skills wrote, by robot, or "blue" and "yellow", and entry'
     )
     drawn: dict[str, Annotated[list[_Shape], Field(max_length=10 * MOST_SHAPES)]] = Field(
         {},
-        description="what skills draw from this tick on, by robot, in its team's view: each a layer's name, "
-        'line, point, circle, text or number, and its numbers [m] and text; "field" is what the world draws',
+        description="drawings from this tick on, by robot, in its team's view: each a layer's name, line, "
+        'point, circle, text or number, and its numbers [m] and text; "field" is the world\'s drawing',
     )
-    game: GameState | None = Field(None, description="what the referee says, in blue's coordinates")
-    touch: RobotId | None = Field(None, description="who touched the ball last")
+    game: GameState | None = Field(None, description="the referee's state, in blue's coordinates")
+    touch: RobotId | None = Field(None, description="the robot that touched the ball last")
     events: list[Event] = []
     outcome: dict[str, JsonValue] | None = Field(None, description="how the match ended, at its last tick")
 
 
 def _schema_of(header: RecordingHeader, version: str = str(VERSION)) -> pa.Schema:
-    """Return the schema of a recording with this header, by default as it is written today."""
+    """Return the schema of a recording with this header, by default in the current version."""
     ball, command = (BALL_3, COMMAND_3) if version == "3" else (BALL, COMMAND)
     poses = pa.list_(pa.float32(), ball + POSE * len(header.robots))
     commands = pa.list_(pa.float32(), command * len(header.robots))
@@ -98,7 +98,7 @@ def _schema_of(header: RecordingHeader, version: str = str(VERSION)) -> pa.Schem
 
 
 def new_stream(sink: BinaryIO | pa.NativeFile, header: RecordingHeader) -> pa.ipc.RecordBatchStreamWriter:
-    """Start a recording with this header; each batch that is written is one of its schema, compressed."""
+    """Start a recording with this header; every batch has its schema and is compressed."""
     schema = _schema_of(header)
     writer = pa.ipc.new_stream(sink, schema, options=pa.ipc.IpcWriteOptions(compression="zstd"))
     # Arrow writes the schema with the first batch.
@@ -107,10 +107,10 @@ def new_stream(sink: BinaryIO | pa.NativeFile, header: RecordingHeader) -> pa.ip
 
 
 def read_bytes(path: Path) -> bytes:
-    """Return what is in a file."""
+    """Return the content of a file."""
     try:
         with path.open("rb") as file:
-            # Python makes room for all that it is asked to read.
+            # Python allocates memory for everything that a read asks for.
             size = os.fstat(file.fileno()).st_size if path.is_file() else MOST_BYTES
             data = file.read(min(size, MOST_BYTES) + 1)
     except OSError as error:
@@ -121,11 +121,11 @@ def read_bytes(path: Path) -> bytes:
 
 
 def open_stream(data: bytes, path: Path) -> tuple[RecordingHeader, Iterator[pa.RecordBatch]]:
-    """Return the header and the batches of ticks, each as it is asked for.
+    """Return the header and an iterator over the batches of ticks.
 
     Raises:
-        RecordingError: the header is none, or a batch is damaged; a last batch that was cut
-            off is left out.
+        RecordingError: the header is invalid or a batch is damaged; a truncated last batch is
+            left out.
     """
     if not data:
         raise RecordingError(path, "is empty")
@@ -184,16 +184,16 @@ def _batches(source: pa.BufferReader, schema: pa.Schema, path: Path, ended: bool
 
 
 def _checked(message: pa.Message, kind: str) -> pa.Message:
-    # Arrow reads a message of another kind for what it is asked for, wherever that leads.
+    # Arrow would read a message of another kind as the requested kind, with unpredictable results.
     if message.type != kind:
         raise pa.ArrowInvalid(f"there is a {message.type} in place of a {kind}")
     return message
 
 
 def _unpacked_size(message: pa.Message) -> int:
-    """Return how many bytes a batch takes once its buffers are unpacked, before Arrow does it unasked."""
+    """Return the unpacked size of a batch [bytes], to check it before Arrow unpacks its buffers."""
 
-    # A flatbuffer: tables find their fields by a table of offsets, which stands before them.
+    # In a flatbuffer, tables find their fields by a table of offsets in front of them.
     def number(kind: str, at: int, of: pa.Buffer = message.metadata) -> int:
         return int(struct.unpack_from(f"<{kind}", of, at)[0])
 
@@ -205,18 +205,18 @@ def _unpacked_size(message: pa.Message) -> int:
     total = 0
     for place in range(buffers + 4, buffers + 4 + 16 * number("I", buffers), 16):
         offset, length = number("q", place), number("q", place + 8)
-        # Every buffer begins with its size, -1 for one that is not packed.
+        # Every buffer begins with its size, or -1 if it is not packed.
         total += max(length, number("q", offset, message.body)) if length else 0
     return total
 
 
 def too_large(path: Path, most: int = MOST_BYTES) -> RecordingError:
-    """Return the error of a file that no match could have been recorded to."""
+    """Return the error for a file larger than any match's recording."""
     return RecordingError(path, f"is larger than {most >> 20} MiB unpacked, as no match is")
 
 
 def invalid(path: Path, error: ValidationError, tick: int | None = None) -> RecordingError:
-    """Return the error of a header or of a tick's changes that are not what they should be."""
+    """Return the error for an invalid header or invalid changes of a tick."""
     first = error.errors(include_url=False)[0]
     field = ".".join([str(part) for part in first["loc"]]) or ("header" if tick is None else "changes")
     return RecordingError(path, first["msg"], tick, field)

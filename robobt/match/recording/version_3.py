@@ -8,18 +8,18 @@ import pyarrow as pa
 from robobt.match.recording.numbers import BALL, COMMAND
 
 BALL_3 = 4
-"""Numbers of the ball: x, y, vx, vy."""
+"""Values per ball: x, y, vx, vy."""
 
 COMMAND_3 = 5
-"""Numbers of a command: vx, vy, omega, kick speed, flags."""
+"""Values per command: vx, vy, omega, kick speed, flags."""
 
 
 def from_version_3(batch: pa.RecordBatch, robots: int, schema: pa.Schema) -> pa.RecordBatch:
-    """Return a batch of so many robots with the columns of ``schema``, today's."""
+    """Return a batch of this many robots with the columns of ``schema``, the current one."""
     places = {
         "truth": [BALL_3] * (BALL - BALL_3),
         "observed": [BALL_3] * (BALL - BALL_3),
-        # Before the flags.
+        # In front of the flags.
         "commands": [COMMAND_3 * slot - 1 for slot in range(1, robots + 1)] * (COMMAND - COMMAND_3),
     }
     columns = [
@@ -30,7 +30,7 @@ def from_version_3(batch: pa.RecordBatch, robots: int, schema: pa.Schema) -> pa.
 
 
 def _widened(column: pa.FixedSizeListArray, places: list[int], kind: pa.DataType) -> pa.Array:
-    """Return a column of lists with a 0 more before each of these places."""
+    """Return a column of lists with an additional 0 in front of each of these places."""
     if column.null_count:
         return pa.nulls(len(column), kind)
     table = column.flatten().to_numpy(zero_copy_only=False).reshape(len(column), column.type.list_size)

@@ -1,1 +1,1 @@
-"""The referee: its settings, what it reports, restarts, fouls and the state of the game."""
+"""The referee: its settings, events, restarts, fouls and the state of the game."""

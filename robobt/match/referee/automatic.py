@@ -22,19 +22,19 @@ from robobt.world.game import GameState, Team
 from robobt.world.state import Frame
 
 CONTROLLER_SEES: tuple[type[Rule], ...] = (KeeperHeld, NoProgress, TooManyRobots)
-"""What the league's game controller looks for itself in the tracked frames that it is sent."""
+"""Events that the league's game controller detects itself in tracked frames."""
 
 
 class AutomaticReferee:
-    """Watches a match; the same frames and states give the same events.
+    """Detects events in a match; the same frames and states give the same events.
 
-    It cannot know whether a robot has tipped over or lost parts, nor whether it holds the ball on purpose,
-    and no world shows a ball that has left over the walls.
+    It does not detect robots that tip over, lose parts or hold the ball on purpose, nor a ball that leaves
+    over the walls, which no world shows.
 
     Args:
         field: the field, which tells the division.
-        settings: what it looks for; the rules' own by default.
-        but: rules that somebody else looks after.
+        settings: what it checks; by default as in the rules.
+        but: rules to leave out, because another program checks them.
     """
 
     def __init__(
@@ -49,11 +49,11 @@ class AutomaticReferee:
         self._rules = {phase: [rule for rule in rules if phase in rule.phases] for phase in Phase}
 
     def watch(self, frame: Frame, game: GameState) -> Sequence[RefereeEvent]:
-        """Return what happened in the next frame.
+        """Return the events in the next frame.
 
         Args:
-            frame: what really is on the field, seen from blue's side; its time grows from call to call.
-            game: the state decided on the frame before; ``restart`` is None once the ball is in play.
+            frame: the true frame, seen from blue's side; its time increases from call to call.
+            game: the state decided on the last frame; ``restart`` is None once the ball is in play.
 
         Raises:
             ValueError: the frame is seen from yellow's side.
@@ -73,7 +73,7 @@ class AutomaticReferee:
 
 
 def rules_of(division: Division, settings: RefereeSettings) -> Iterator[Rule]:
-    """Return the rules that hold; those that do not stop play come first."""
+    """Return the active rules; rules that do not stop play come first."""
     if settings.crash_speed is not None:
         yield Crash(settings.crash_speed)
     if settings.max_ball_speed is not None:

@@ -1,4 +1,4 @@
-"""The referee's commands given by hand, as by a person at the game controller."""
+"""Referee commands given by hand, as by a person at the game controller."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ FOR_A_TEAM = ("kick-off", "free kick", "penalty")
 
 
 def give(controller: Controller, field: FieldGeometry, order: Order, team: Team | None = None) -> None:
-    """Give an order; what follows from it is the controller's to see to.
+    """Give an order; the controller handles its consequences.
 
     Raises:
         ValueError: the order needs a team.
@@ -29,7 +29,7 @@ def give(controller: Controller, field: FieldGeometry, order: Order, team: Team 
     elif order == "force start":
         state.play()
     elif order == "continue":
-        # Out of a HALT by way of a STOP, as the rules have it.
+        # A HALT is left through a STOP, as the rules say.
         state.wait() if state.game.halted else state.resume()
     elif team is None:
         raise ValueError(f"a {order} needs a team")

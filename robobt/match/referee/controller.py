@@ -1,4 +1,4 @@
-"""The controller: it decides what follows from what happens on the field."""
+"""The controller: it decides the consequences of events on the field."""
 
 from __future__ import annotations
 
@@ -22,13 +22,13 @@ from robobt.world.presence import without_absent
 from robobt.world.state import Frame
 
 _SPOT_PATIENCE = 3.0
-"""A hand puts the ball down after this long even if a robot stands on the spot [s]."""
+"""The ball is placed by hand after this time even if a robot stands on the spot [s]."""
 
 _HALT_TIME = 2.0
-"""A HALT lasts so long: robots have to brake. Source: SSL rules [s]."""
+"""Duration of a HALT, in which robots have to brake [s]. Source: SSL rules."""
 
 _SLACK = 1e-9
-"""Times are sums of control periods [s]."""
+"""Tolerance for times, which are sums of control periods [s]."""
 
 _PLACING, _PREPARING = frozenset(PLACE.values()), frozenset(PREPARE.values())
 
@@ -36,17 +36,17 @@ _PLACING, _PREPARING = frozenset(PLACE.values()), frozenset(PREPARE.values())
 class Controller:
     """Decides the state of the game; the same frames and events give the same decisions.
 
-    Blue always defends -x, also in the second half. Left out is what people decide or do: challenges,
-    forced time-outs, robots taken off the field by hand.
+    Blue always defends -x, also in the second half. Human decisions are left out: challenges, forced
+    time-outs, robots taken off the field by hand.
 
     Args:
         field: the field, which tells the division.
-        settings: times and numbers, by default those of the rules.
-        generator: draws who places the ball for a forced start, and the spot of a random opening.
+        settings: times and limits, by default as in the rules.
+        generator: draws the team that places the ball for a forced start, and the spot of a random opening.
 
     Attributes:
-        state: the match's.
-        requests: what the teams may ask for.
+        state: the state of the match.
+        requests: the teams' requests.
     """
 
     def __init__(
@@ -64,7 +64,7 @@ class Controller:
         return self.state.game
 
     def update(self, frame: Frame, events: Sequence[RefereeEvent]) -> Decision:
-        """Decide on the next frame, seen from blue's side, in which ``events`` happened."""
+        """Decide on the next frame, seen from blue's side, with its ``events``."""
         state, self._place = self.state, None
         frame = without_absent(frame, state.game)
         state.ball = frame.ball.position
@@ -82,7 +82,7 @@ class Controller:
         told, state.events = tuple(state.events), []
         return Decision(state.game, told, self._place)
 
-    # What happened.
+    # Handling of events.
 
     def _take(self, event: RefereeEvent) -> None:
         state, kind, team = self.state, event.kind, event.team
@@ -119,7 +119,7 @@ class Controller:
             self.state.stop(resumption)
 
     def _take_in_penalty(self, event: RefereeEvent) -> bool:
-        """Take what ends a penalty kick; return False for all else."""
+        """Handle an event that ends a penalty kick; return False for any other event."""
         state, kind, team = self.state, event.kind, event.team
         kicking = state.game.penalty
         if kicking is None:
@@ -166,7 +166,7 @@ class Controller:
             state.stop(goal_kick(self._field, kicking.other, state.ball[1]))
 
     def _too_close(self, team: Team, event: RefereeEvent) -> None:
-        """Punish a robot near the opponents' defence area: by their free kick, the second time by a HALT."""
+        """Punish a robot near the opponents' defence area: first by their free kick, then by a HALT."""
         state, record = self.state, self.state.records[team]
         if state.running:
             self._stop_after(event)
@@ -185,7 +185,7 @@ class Controller:
         else:
             state.wait()
 
-    # What each command waits for.
+    # The condition that each command waits for.
 
     def _judge(self, frame: Frame) -> None:
         state = self.state
@@ -216,7 +216,7 @@ class Controller:
     def _judge_preparation(self, frame: Frame) -> None:
         state, spot = self.state, self.state.following.spot
         if distance(state.ball, spot) > self._settings.in_play_distance:
-            # Somebody has moved it: it is put back.
+            # A robot has moved the ball, so it is put back.
             state.stop(state.following)
         elif self._impatient or self._lasted(
             ready(frame, self._field, state.game, state.following), self._settings.stop_time
@@ -242,7 +242,7 @@ class Controller:
             state.resume()
 
     def _ball_ready(self, frame: Frame) -> bool:
-        """Return whether the ball is where it has to be in a STOP; see to it where it is not."""
+        """Return whether the ball is where it has to be in a STOP; arrange its placement if not."""
         state, spot = self.state, self.state.following.spot
         if not state.placing.by_hand:
             if not needs_placement(frame, self._field, spot):
@@ -266,7 +266,7 @@ class Controller:
         return longest is not None and self.state.elapsed >= longest - _SLACK
 
     def _lasted(self, clear: bool, seconds: float) -> bool:
-        """Return whether nothing has kept play from going on for so long [s]; ``clear`` says of now."""
+        """Return whether play could have continued for this time [s]; ``clear`` says whether it could now."""
         state = self.state
         if not clear:
             state.clear = None

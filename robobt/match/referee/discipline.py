@@ -20,7 +20,7 @@ class Discipline:
     """Counts fouls and gives cards.
 
     Attributes:
-        records: each team's.
+        records: each team's record.
     """
 
     def __init__(self, settings: RefereeSettings, division: Division) -> None:
@@ -36,10 +36,10 @@ class Discipline:
         }
 
     def count(self, event: RefereeEvent) -> Iterator[RefereeEvent]:
-        """Count an event where it is a foul; return the events of the cards that follow."""
+        """Count an event if it is a foul; return the events of the resulting cards."""
         if event.kind not in FOULS:
             return
-        # A crash without a team is the fault of both.
+        # For a crash without a team both teams are at fault.
         for team in Team if event.team is None else (event.team,):
             record = self.records[team]
             if event.kind in SOFT_FOULS:
@@ -50,7 +50,7 @@ class Discipline:
                 yield from self.card(team, event.time)
 
     def card(self, team: Team, time: float) -> Iterator[RefereeEvent]:
-        """Show a team a card; return the event of one that had to be red."""
+        """Show a team a card; return its event if the card had to be red."""
         if self.records[team].card(self._card_time):
             yield self._about(EventKind.MULTIPLE_CARDS, team, time)
 

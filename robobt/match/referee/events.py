@@ -1,4 +1,4 @@
-"""What an automatic referee reports, and what a referee decides, by the league's names."""
+"""The events that an automatic referee reports and a referee's decision, with the league's names."""
 
 from __future__ import annotations
 
@@ -62,14 +62,13 @@ class RefereeEvent:
     """An event on the field.
 
     Attributes:
-        time: when [s].
-        kind: what.
-        team: who did it, the league's ``by_team``: the scorer of a goal, the offender of a foul; None when
-            nobody did.
-        robot: which robot, as far as known.
-        x, y: where, in world coordinates [m].
-        details: the other fields of the league's message by their names, as ``crash_speed``; SI units and
-            world coordinates (blue defends -x).
+        time: time of the event [s].
+        kind: kind of the event.
+        team: the league's ``by_team``: the scorer of a goal, the offender of a foul; None if no team caused
+            it.
+        robot: number of the robot, if known. x, y: place of the event, in world coordinates [m].
+        details: the other fields of the league's message by name, such as ``crash_speed``; SI units and world
+            coordinates (blue defends -x).
     """
 
     time: float
@@ -90,7 +89,7 @@ class RefereeEvent:
 
     @property
     def text(self) -> str:
-        """The details, for people."""
+        """The details as readable text."""
         return ", ".join(
             f"{name} {_told(value)}" for name, value in self.details.items() if value is not None
         )
@@ -104,12 +103,12 @@ def _told(value: Detail) -> str:
 
 @dataclass(slots=True)
 class Decision:
-    """What the referee decides on one frame.
+    """The referee's decision on one frame.
 
     Attributes:
         game: the game state from now on, in world coordinates.
-        events: what happened in this frame.
-        place_ball: where the ball has to be put down at rest right now, None to leave it [m].
+        events: the events in this frame.
+        place_ball: where the ball has to be placed at rest now [m], None to leave it.
     """
 
     game: GameState

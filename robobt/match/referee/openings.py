@@ -1,4 +1,4 @@
-"""How a match begins, where that is not a kick-off: drills begin with the restart that they are about."""
+"""How a match begins if not by a kick-off; drills begin with the restart to practise."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from robobt.world.state import Frame
 
 @dataclass(slots=True, frozen=True)
 class Opening:
-    """The stage that a match begins in, its first command, and what that leads to."""
+    """The first stage of a match, its first command and the restart after it."""
 
     stage: Stage
     command: RefereeCommand
@@ -34,7 +34,7 @@ class Opening:
 def opening_of(
     settings: RefereeSettings, field: FieldGeometry, frame: Frame, generator: np.random.Generator
 ) -> Opening:
-    """Return how a match begins whose first frame this is; ``generator`` draws a random spot."""
+    """Return the opening of a match from its first frame; ``generator`` draws a random spot."""
     team, ball = settings.opening_team, frame.ball.position
     if settings.opening == "force_start":
         return Opening(Stage.NORMAL_FIRST_HALF, RefereeCommand.FORCE_START, drop_ball(field, *ball))

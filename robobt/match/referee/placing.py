@@ -1,7 +1,7 @@
-"""Who brings the ball to its spot: one team, then the other, then a hand.
+"""Who places the ball: one team, then the other, then a hand.
 
-Source: RoboCup SSL rules, chapter "Ball Placement"; the order and what a failure costs are the league's
-game controller's.
+Source: RoboCup SSL rules, chapter "Ball Placement"; the order and the cost of a failure follow the league's
+game controller.
 """
 
 from __future__ import annotations
@@ -22,17 +22,18 @@ from robobt.world.geometry import distance
 from robobt.world.state import Frame
 
 _INTERFERENCE_TIME = 10.0
-"""Each interference gives the placing team so much more time. Source: SSL rules [s]."""
+"""Additional time of the placing team for each interference [s]. Source: SSL rules."""
 
 
 class Placing:
-    """The placement of the ball in one stoppage after another.
+    """The ball placement in each stoppage.
 
     Attributes:
-        team: who places the ball now, None while nobody does.
-        done: whether the team that goes on has placed the ball in this stoppage, which needs no more time.
-        by_hand: whether a hand puts the ball down in this stoppage.
-        deadline: when the placing team's time is over [s].
+        team: the team that places the ball now, or None.
+        done: whether the team with the restart has placed the ball itself, so that it needs no preparation
+            time.
+        by_hand: whether the ball is placed by hand in this stoppage.
+        deadline: end of the placing team's time [s].
     """
 
     def __init__(
@@ -52,14 +53,14 @@ class Placing:
         self._interfered: set[Team] = set()
 
     def begin(self, following: Resumption) -> None:
-        """Begin a stoppage after which play goes on so."""
+        """Begin a stoppage that leads to this restart."""
         self.team, self.done = None, False
         by_robots = following.restart not in (Restart.KICKOFF, Restart.PENALTY)
         self.by_hand = self._settings.placement == "by_hand" or not by_robots
         self._tried.clear()
 
     def choose(self, following: Resumption, time: float) -> Team | None:
-        """Return who is to place the ball now, None, and from then on a hand, where no team is left."""
+        """Return the team that is to place the ball now; None if no team is left, then a hand places it."""
         able = [team for team in Team if team not in self._tried and self._records[team].places]
         if not able:
             self.by_hand = True
@@ -80,14 +81,14 @@ class Placing:
         return team
 
     def succeed(self, following: Resumption) -> None:
-        """Note that the ball lies where it has to; who takes the restart too is ready for it at once."""
+        """Note that the ball is in place; if the placing team also takes the restart, it is ready at once."""
         if self.team is not None:
             record = self._records[self.team]
             record.failures = max(0, record.failures - 1)
         self.team, self.done = None, self.team is following.team
 
     def fail(self, frame: Frame, following: Resumption) -> tuple[RefereeEvent, Resumption]:
-        """Note that the placing team's time is over; return the event, and how play goes on now."""
+        """Note that the placing team's time is over; return the event and the restart that follows now."""
         team = self.team
         assert team is not None
         ball = frame.ball

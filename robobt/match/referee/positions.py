@@ -1,4 +1,4 @@
-"""Where ball and robots have to be before play goes on.
+"""Checks of ball and robot positions before play continues.
 
 Source: the league's game controller, ``engine/process_continue*.go``.
 """
@@ -16,37 +16,37 @@ from robobt.world.rules import STOP_DISTANCE, area_distance, own_side
 from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS, Frame, RobotId
 
 _SPOT_TOLERANCE = 0.05
-"""A ball further from its spot than this is put down anew by hand [m]."""
+"""A ball farther from its spot than this is placed again by hand [m]."""
 
 _AT_REST = 0.05
-"""A ball slower than this lies still for a hand [m/s]."""
+"""A ball slower than this counts as at rest for placement by hand [m/s]."""
 
 _STILL = 0.2
-"""A ball slower than this does not keep play from going on [m/s]."""
+"""A ball slower than this does not prevent play from continuing [m/s]."""
 
 _NEAR_SPOT = 1.0
-"""A ball this near to its spot need not be placed [m]."""
+"""A ball closer to its spot than this need not be placed [m]."""
 
 _AREA_GAP = 0.7
-"""A ball nearer to a defence area has to be placed [m]."""
+"""A ball closer to a defence area than this has to be placed [m]."""
 
 _KEEP_OFF = STOP_DISTANCE + ROBOT_RADIUS - 0.05
-"""Robots' centres are at least this far from the ball [m]."""
+"""Least distance of robots' centres from the ball [m]."""
 
 _PENALTY_MARK = 0.15
-"""How far from the mark the ball of a penalty kick may lie [m]."""
+"""Largest distance of the ball from the mark at a penalty kick [m]."""
 
 _PENALTY_GAP = 1.0
-"""Everybody but kicker and goalkeeper stays this far behind the ball at a penalty kick [m]."""
+"""Distance behind the ball at a penalty kick for all but kicker and goalkeeper [m]."""
 
 
 def ball_placed(frame: Frame, spot: Point) -> bool:
-    """Return whether the ball lies at rest at ``spot``, as a hand puts it down."""
+    """Return whether the ball is at rest at ``spot``, as after placement by hand."""
     return distance(frame.ball.position, spot) <= _SPOT_TOLERANCE and frame.ball.speed < _AT_REST
 
 
 def spot_free(frame: Frame, spot: Point) -> bool:
-    """Return whether no robot stands where the ball has to be put."""
+    """Return whether no robot stands where the ball has to be placed."""
     clear = ROBOT_RADIUS + BALL_RADIUS + 0.02
     return all(
         hypot(robot.x - spot[0], robot.y - spot[1]) > clear for robot in (*frame.own, *frame.opponents)
@@ -65,9 +65,9 @@ def needs_placement(frame: Frame, field: FieldGeometry, spot: Point) -> bool:
 
 
 def stop_clear(frame: Frame, game: GameState, following: Resumption) -> bool:
-    """Return whether robots let play go on after a STOP.
+    """Return whether the robots' positions allow play to continue after a STOP.
 
-    No team has too many, and nobody is near the ball: at a free kick no opponent, else nobody at all.
+    No team may have too many robots, and no robot (at a free kick no opponent) may be near the ball.
     """
     free_kick = following.team if following.restart is Restart.FREE_KICK else None
     ball = frame.ball
@@ -85,7 +85,7 @@ def stop_clear(frame: Frame, game: GameState, following: Resumption) -> bool:
 
 
 def ready(frame: Frame, field: FieldGeometry, game: GameState, restart: Resumption) -> bool:
-    """Return whether everybody stands where it has to before a kick-off or penalty kick."""
+    """Return whether all robots are in position for a kick-off or penalty kick."""
     assert restart.team is not None
     if restart.restart is Restart.KICKOFF:
         return distance(frame.ball.position, restart.spot) <= field.center_radius and all(
@@ -99,7 +99,7 @@ def ready(frame: Frame, field: FieldGeometry, game: GameState, restart: Resumpti
 def penalty_problems(
     frame: Frame, field: FieldGeometry, game: GameState, mark: Point, kicking: Team
 ) -> Iterator[str]:
-    """Say what keeps ``kicking`` from taking a penalty kick from ``mark``; nothing where all is ready."""
+    """Return what prevents ``kicking`` from taking a penalty kick from ``mark``; empty if all is ready."""
     if distance(frame.ball.position, mark) > _PENALTY_MARK:
         yield f"the ball is {distance(frame.ball.position, mark):.2f} m from the mark"
     defending, forward = kicking.other, -own_side(kicking)

@@ -21,17 +21,17 @@ _BEFORE = GameState(RefereeCommand.HALT, stage=Stage.NORMAL_FIRST_HALF_PRE, may_
 
 
 class Referee:
-    """Follows the rules of a match in simulated time; the same frames give the same decisions.
+    """Referees a match in simulated time; the same frames give the same decisions.
 
-    What it draws by lot follows from the first frame.
+    Its random draws depend on the first frame only.
 
     Args:
         field: the field, which tells the division.
-        settings: what is checked and how long things take; by default as the rules say.
+        settings: checks and times; by default as in the rules.
 
     Attributes:
-        automatic: sees what happens.
-        controller: decides what follows, and hears the teams' requests; None before the first frame.
+        automatic: detects the events.
+        controller: decides on them and handles the teams' requests; None before the first frame.
     """
 
     def __init__(self, field: FieldGeometry, settings: RefereeSettings | None = None) -> None:
@@ -48,7 +48,7 @@ class Referee:
     def update(self, frame: Frame) -> Decision:
         """Judge the next frame.
 
-        ``frame`` shows what really is on the field, from blue's side; its time grows from call to call.
+        ``frame`` is the true frame, from blue's side; its time increases from call to call.
         """
         if frame.team is not Team.BLUE:
             raise ValueError("the referee looks from blue's side; pass World.truth() as it is")
@@ -60,4 +60,4 @@ class Referee:
         return self.controller.update(frame, self.automatic.watch(frame, self.game))
 
     def close(self) -> None:
-        """Hold nothing that would have to be let go; see :class:`robobt.match.refereeing.MatchReferee`."""
+        """Do nothing, as there is nothing to close; see :class:`robobt.match.refereeing.MatchReferee`."""

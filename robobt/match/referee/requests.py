@@ -1,7 +1,7 @@
-"""What teams ask of the controller: time-outs, substitutions, advantage, another goalkeeper.
+"""Requests of teams to the controller: time-outs, substitutions, advantage, another goalkeeper.
 
-Source: RoboCup SSL rules, chapters "Time-outs", "Substitution" and "Goalkeeper"; the league's game
-controller for when a request is heard.
+Source: RoboCup SSL rules, chapters "Time-outs", "Substitution" and "Goalkeeper"; the league's game controller
+for when a request takes effect.
 """
 
 from __future__ import annotations
@@ -13,20 +13,20 @@ from robobt.world.game import RefereeCommand, Team
 from robobt.world.rules import own_side
 
 SUBSTITUTION_TIME = 20.0
-"""A HALT for substitutions lasts so long. Source: SSL rules [s]."""
+"""Duration of a HALT for substitutions [s]. Source: SSL rules."""
 
 
 class Requests:
-    """A team's wishes; each takes effect when the rules let it.
+    """The teams' requests; each takes effect when the rules allow it.
 
-    ``state`` is the match's.
+    ``state`` is the state of the match.
     """
 
     def __init__(self, state: MatchState) -> None:
         self._state = state
 
     def time_out(self, team: Team) -> bool:
-        """Ask for a time-out, which begins at the next STOP; False where the team has none left."""
+        """Request a time-out, which begins at the next STOP; return False if the team has none left."""
         record = self._state.records[team]
         if self._state.stages.shoot_out or record.time_outs < 1 or record.time_out_left <= 0.0:
             return False
@@ -34,7 +34,7 @@ class Requests:
         return True
 
     def end_time_out(self, team: Team) -> bool:
-        """End the team's time-out, or take the wish for one back; False where there is none."""
+        """End the team's time-out or withdraw its request; return False if there is neither."""
         state, record = self._state, self._state.records[team]
         if record.wants_time_out:
             record.wants_time_out = False
@@ -46,15 +46,15 @@ class Requests:
         return True
 
     def substitution(self, team: Team, wanted: bool = True) -> None:
-        """Ask to exchange robots at the next STOP, or take that back."""
+        """Request a substitution at the next STOP, or withdraw the request."""
         self._state.records[team].wants_substitution = wanted
 
     def advantage(self, team: Team, play_on: bool) -> None:
-        """Say whether play is to go on while the opponents have too many robots."""
+        """Set whether play continues while the opponents have too many robots."""
         self._state.records[team].continues = play_on
 
     def keeper(self, team: Team, number: int) -> bool:
-        """Name another goalkeeper; False where the ball is in play and in the team's own half."""
+        """Name another goalkeeper; return False if the ball is in play and in the team's own half."""
         state = self._state
         if state.running and own_side(team) * state.ball[0] > 0.0:
             return False
@@ -74,7 +74,7 @@ class Requests:
         self._state.records[team].red += 1
 
     def serve(self) -> bool:
-        """Fulfil what was asked for, in a STOP; return whether that changed the command."""
+        """Carry out the requests, in a STOP; return whether that changed the command."""
         state = self._state
         wanting = [team for team in Team if state.records[team].wants_substitution]
         if wanting:

@@ -1,4 +1,4 @@
-"""Restarts: where the ball is put, and for whom. World coordinates, metres.
+"""Restarts: the ball's spot and the team. World coordinates, metres.
 
 Source: RoboCup SSL rules, chapters "Ball Leaves The Field" and "Resuming The Game".
 """
@@ -25,9 +25,9 @@ GOAL_KICK_DISTANCE = 1.0
 
 @dataclass(slots=True, frozen=True)
 class Resumption:
-    """How play goes on after a STOP: a restart of ``team`` at ``spot``, or for both teams without one.
+    """The restart after a STOP: of ``team`` at ``spot``, or of both teams without ``team``.
 
-    ``left_field`` says that the ball had left the field.
+    ``left_field`` says whether the ball had left the field.
     """
 
     spot: Point
@@ -37,7 +37,7 @@ class Resumption:
 
     @property
     def command(self) -> RefereeCommand:
-        """The command that begins it."""
+        """The command that starts it."""
         if self.restart is None or self.team is None:
             return RefereeCommand.FORCE_START
         if self.restart is Restart.FREE_KICK:
@@ -61,7 +61,7 @@ def free_kick_spot(field: FieldGeometry, x: float, y: float) -> Point:
 
 
 def drop_ball(field: FieldGeometry, x: float, y: float) -> Resumption:
-    """Return play for both teams from the legal spot nearest to (x, y)."""
+    """Return a forced start from the legal spot nearest to (x, y)."""
     return Resumption(free_kick_spot(field, x, y))
 
 

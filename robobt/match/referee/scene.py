@@ -1,4 +1,4 @@
-"""What the rules look at: a frame, the state of the game and what led up to them."""
+"""The input of the rules: a frame, the state of the game and their history."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ from robobt.world.state import BallState, Frame, RobotId, RobotState
 
 
 class Phase(Enum):
-    """What the teams may do; each rule looks in some of them."""
+    """The phases of play; each rule is checked in some of them."""
 
     HALT = auto()
-    """Nothing: HALT and time-outs."""
+    """Robots stand still: HALT and time-outs."""
     STOP = auto()
     PREPARE = auto()
     """Take positions for a kick-off or a penalty kick."""
@@ -27,25 +27,25 @@ class Phase(Enum):
     KICK = auto()
     """A kick-off or free kick may be taken."""
     PENALTY = auto()
-    """A penalty kick may be taken or was; until the next command."""
+    """A penalty kick may be taken or was taken; until the next command."""
     PLAY = auto()
 
 
 class Scene:
-    """One frame after another; coordinates are the world's, seen from blue's side.
+    """The sequence of frames, in world coordinates, seen from blue's side.
 
     Attributes:
         field: the field.
-        settings: what is checked.
-        division: whose rules hold.
-        frame: the present frame, without robots that count as off the field.
-        before: the last frame, None at the first.
+        settings: the settings of the checks.
+        division: the division whose rules apply.
+        frame: the present frame, without robots off the field.
+        before: the last frame, None at the first frame.
         game: the state of the game that was decided on the last frame.
-        phase: what the teams may do.
-        since: when this phase began [s].
-        stopped: when play was stopped last, or a placement began [s].
-        penalty: whose penalty kick this phase is, or was last.
-        touches: who touches the ball and who did.
+        phase: the phase of play.
+        since: start of this phase [s].
+        stopped: last time at which play was stopped or a placement began [s].
+        penalty: the team of the present or last penalty kick.
+        touches: present and past touches of the ball.
         out: whether the ball is out of the field.
         inside: the ball when it was last in the field.
     """
@@ -68,7 +68,7 @@ class Scene:
         self._seen = False
 
     def update(self, frame: Frame, game: GameState) -> bool:
-        """Take in the next frame; return whether another phase, or the same one anew, begins with it."""
+        """Take in the next frame; return whether a phase begins with it, even the same phase again."""
         self.before = self.frame if self._seen else None
         self._seen = True
         self.frame = frame = without_absent(frame, game)
@@ -86,7 +86,7 @@ class Scene:
         self._state = state
         phase = self._phase_of(game)
         if phase is self.phase is Phase.PENALTY:
-            # The ball has moved: the kick goes on.
+            # The ball has moved, so the kick continues.
             return False
         if phase in _STOPPED and self.phase not in _STOPPED:
             self.stopped = frame.time
@@ -116,14 +116,14 @@ class Scene:
         return self.frame.own if team is Team.BLUE else self.frame.opponents
 
     def robot(self, identity: RobotId) -> RobotState | None:
-        """Return a robot, None where it is not on the field."""
+        """Return a robot, or None if it is not on the field."""
         for robot in self.team(identity.team):
             if robot.id == identity.number:
                 return robot
         return None
 
     def pushed(self, team: Team, robot: RobotState, reach: float = 0.19) -> bool:
-        """Return whether an opponent touches this robot, which may then not be where it wants to be."""
+        """Return whether an opponent touches this robot and so may have pushed it there."""
         for other in self.team(team.other):
             dx, dy = other.x - robot.x, other.y - robot.y
             if dx * dx + dy * dy < reach * reach:

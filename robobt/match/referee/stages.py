@@ -10,10 +10,10 @@ from robobt.match.referee.settings import RefereeSettings
 from robobt.world.game import Stage, Team
 
 _MERCY_GOALS, _MERCY_LEAD = 10, 2
-"""A match ends early when a team has so many goals and leads by so many. Source: SSL rules."""
+"""Goals and lead of a team at which a match ends early. Source: SSL rules."""
 
 _ATTEMPTS = 10
-"""Kicks of a shoot-out, both teams', before the score decides. Source: SSL rules."""
+"""Number of kicks of a shoot-out, of both teams together, before the score decides. Source: SSL rules."""
 
 _BEGUN = {
     Stage.NORMAL_FIRST_HALF_PRE: Stage.NORMAL_FIRST_HALF,
@@ -32,12 +32,12 @@ _SECOND = frozenset({Stage.NORMAL_SECOND_HALF_PRE, Stage.EXTRA_SECOND_HALF_PRE})
 
 
 class Stages:
-    """Which stage a match is in, and how long it has been played.
+    """The stage of a match, and its playing time.
 
     Attributes:
-        stage: the stage.
+        stage: the present stage.
         played: playing time in it [s].
-        turn: whose kick is next in a shoot-out.
+        turn: the team that kicks next in a shoot-out.
         attempts: kicks of the shoot-out so far.
     """
 
@@ -50,14 +50,14 @@ class Stages:
 
     @property
     def length(self) -> float | None:
-        """Playing time of this stage, None without end [s]."""
+        """Playing time of this stage [s], None for no end."""
         if self.stage in _EXTRA:
             return self._settings.extra_length
         return None if self.stage is Stage.PENALTY_SHOOTOUT else self._settings.half_length
 
     @property
     def left(self) -> float | None:
-        """Playing time that this stage has left, negative once it is over; None without end [s]."""
+        """Playing time left in this stage [s], negative once it is over; None for no end."""
         return None if self.length is None else self.length - self.played
 
     @property
@@ -72,7 +72,7 @@ class Stages:
 
     @property
     def kickoff_team(self) -> Team:
-        """Who begins this stage."""
+        """The team that begins this stage."""
         team = self._settings.opening_team
         return team.other if self.stage in _SECOND else team
 
@@ -90,7 +90,7 @@ class Stages:
         self.stage, self.played = _AFTER_BREAK[self.stage], 0.0
 
     def over(self, scores: tuple[int, int]) -> Stage | None:
-        """Return the stage that follows at this stoppage, None while the present one goes on."""
+        """Return the stage that follows at this stoppage, or None if the present one continues."""
         most, lead = max(scores), abs(scores[0] - scores[1])
         if self.shoot_out:
             decided = self.attempts >= _ATTEMPTS and self.attempts % 2 == 0 and lead > 0

@@ -1,4 +1,4 @@
-"""The state of a match under its controller, and how it changes.
+"""The state of a match under the controller, and its transitions.
 
 Source: RoboCup SSL rules of 2026, and the league's game controller for what they leave open; command and
 stage numbers are those of its messages.
@@ -22,32 +22,32 @@ from robobt.world.game import STARTED, GameState, RefereeCommand, Restart, Stage
 from robobt.world.geometry import Point
 
 PREPARATION_TIME = 10.0
-"""A kick-off and a penalty kick are prepared in this time, and taken in as much. Source: SSL rules [s]."""
+"""Time to prepare a kick-off or penalty kick, and again to take it [s]. Source: SSL rules."""
 
 _TIME_OUTS = {command: team for team, command in TIME_OUT.items()}
 
 _TOLD_EVERY = 0.1
-"""Where nothing else changes, the times that are left are told anew after this long [s]."""
+"""Interval at which the remaining times are updated if nothing else changes [s]."""
 
 
 class MatchState:
-    """What the controller knows and how it goes on; coordinates are the world's, times those of frames.
+    """The controller's state and transitions, in world coordinates and frame time.
 
     Attributes:
-        game: the state of the game as it is told.
+        game: the state of the game as sent to the teams.
         records: fouls, cards and budgets of each team.
         discipline: counts the fouls.
         stages: the stage of the match.
-        placing: who brings the ball.
-        following: how play goes on after this stop.
-        events: what happened on this frame.
-        ball: where the ball is [m].
-        time: now [s].
-        since: when the present command was given [s].
-        least: how long the present STOP lasts at the least [s].
-        deadline: when the present action is over, None without a limit [s].
-        clear: since when nothing keeps play from going on, None while something does [s].
-        kick_spot: where the ball lay when it might be kicked [m].
+        placing: the ball placement.
+        following: the restart after this stop.
+        events: the events of this frame.
+        ball: position of the ball [m].
+        time: the present time [s].
+        since: time of the present command [s].
+        least: least duration of the present STOP [s].
+        deadline: end of the present action [s], None without a limit.
+        clear: time since which play could continue [s], None while something prevents it.
+        kick_spot: the ball's position when the kick was allowed [m].
     """
 
     def __init__(
@@ -84,7 +84,7 @@ class MatchState:
         return self.game.command in STARTED
 
     def pass_time(self, seconds: float) -> None:
-        """Let the match's clock go on [s]."""
+        """Advance the match's clock [s]."""
         self.time += seconds
         command = self.game.command
         if command in STARTED:
@@ -95,7 +95,7 @@ class MatchState:
             self.records[_TIME_OUTS[command]].time_out_left -= seconds
 
     def record(self, event: RefereeEvent, *, counts: bool = True) -> None:
-        """Note what happened; where it is a foul that ``counts`` it may cost a card."""
+        """Note an event; a foul that ``counts`` may cost a card."""
         self.events.append(event)
         self._names += (event.kind.value,)
         if counts:
@@ -103,7 +103,7 @@ class MatchState:
                 self.record(card)
 
     def note(self, kind: EventKind, team: Team | None, reason: str | None = None) -> RefereeEvent:
-        """Record an event of the controller's own, where the ball is; return it."""
+        """Record an event of the controller itself, at the ball's position; return it."""
         details = {} if reason is None else {"reason": reason}
         event = RefereeEvent(self.time, kind, team, None, *self.ball, details)
         self.record(event)
@@ -117,7 +117,7 @@ class MatchState:
         self.game = replace(self.game, command=command)
 
     def stop(self, following: Resumption) -> None:
-        """STOP, after which play goes on with ``following``."""
+        """Give a STOP, after which ``following`` is taken."""
         self.following = following
         self.placing.begin(following)
         for record in self.records.values():
@@ -125,7 +125,7 @@ class MatchState:
         self.wait()
 
     def wait(self, least: float = 0.0) -> None:
-        """STOP for the restart that is due, for ``least`` at the least [s]."""
+        """Give a STOP of at least ``least`` [s] for the next restart."""
         following = self.following
         self.give(RefereeCommand.STOP)
         self.least = least
@@ -140,7 +140,7 @@ class MatchState:
         )
 
     def halt(self, seconds: float | None) -> None:
-        """HALT for so long [s]; None is for good."""
+        """Give a HALT of this duration [s]; None for no end."""
         self.give(RefereeCommand.HALT, None if seconds is None else self.time + seconds)
         self.game = replace(self.game, restart=None, restart_team=None, may_touch=False, placement=None)
 
@@ -153,7 +153,7 @@ class MatchState:
         self.game = replace(self.game, restart=None, restart_team=None, may_touch=False, placement=None)
 
     def end_halt(self) -> None:
-        """STOP after a HALT or time-out, with the next stage where that was a break."""
+        """Give a STOP after a HALT or time-out, and start the next stage after a break."""
         for record in self.records.values():
             record.substituting = False
         if self.stages.in_break:
@@ -178,7 +178,7 @@ class MatchState:
         self.game = replace(self.game, restart=Restart.BALL_PLACEMENT, restart_team=team, may_touch=True)
 
     def resume(self) -> None:
-        """Go on after a STOP."""
+        """Continue after a STOP."""
         following = self.following
         if following.command is RefereeCommand.FORCE_START:
             self.play()
@@ -205,7 +205,7 @@ class MatchState:
         self.free_ball()
 
     def free_ball(self) -> None:
-        """The restart has been taken, or its time is over; a penalty kick goes on."""
+        """Note that the restart has been taken or its time is over; a penalty kick continues."""
         if self.game.penalty is None:
             self.deadline = None
         self.game = replace(
@@ -214,7 +214,7 @@ class MatchState:
 
     @property
     def kick_time(self) -> float:
-        """How long the restart that is due may take [s]."""
+        """Time to take the next restart [s]."""
         if self.following.restart is Restart.PENALTY:
             return PREPARATION_TIME
         if self.settings.kick_timeout == "rules" and self.following.restart is Restart.KICKOFF:
@@ -225,10 +225,10 @@ class MatchState:
         self.stages.begin_play()
         self._names = ()
 
-    # What is told.
+    # The state sent to the teams.
 
     def tell(self) -> None:
-        """Bring the game state up to date."""
+        """Update the game state."""
         blue, yellow = self.records[Team.BLUE], self.records[Team.YELLOW]
         game, said = self.game, (blue.status(), yellow.status(), self._names)
         if game is self._told and said == self._said and self.time - self._told_at < _TOLD_EVERY:

@@ -1,4 +1,4 @@
-"""Who touches the ball, who touched it last and who has carried it how far."""
+"""Touches of the ball: present, last, and the distance carried."""
 
 from __future__ import annotations
 
@@ -9,17 +9,17 @@ from robobt.world.state import BallState, Frame, RobotId, RobotState
 
 
 class Touches:
-    """Follows the ball from frame to frame; frames are seen from blue's side.
+    """Tracks touches of the ball from frame to frame; frames are seen from blue's side.
 
     Attributes:
-        now: robots that touch the ball in this frame.
-        last: who touched it last, as the world reports it, or else by the contact seen.
-        where: where the ball was when it was last touched [m].
-        times: when each team touched it last [s].
-        highest: how high the ball has been since each team touched it last, in this phase of the game [m].
-        carrier: who keeps the ball at its hull, None when nobody does.
-        carry_start: where the carrier got it [m].
-        carried: how far the carrier has taken it from there, as the crow flies [m].
+        now: the robots that touch the ball in this frame.
+        last: the robot that touched the ball last, from the world's report or else from contact.
+        where: the ball's position at the last touch [m].
+        times: time of each team's last touch [s].
+        highest: greatest height of the ball since each team's last touch, in this phase of the game [m].
+        carrier: the robot that keeps the ball at its hull, or None.
+        carry_start: where the carrier got the ball [m].
+        carried: straight-line distance that the carrier has taken the ball from there [m].
     """
 
     def __init__(self) -> None:
@@ -65,11 +65,11 @@ class Touches:
         self._follow_carrier(ball, carrier)
 
     def forget_heights(self) -> None:
-        """Count from here how high the ball gets: another phase of the game begins."""
+        """Reset the ball's greatest height, because another phase of the game begins."""
         self.highest = dict.fromkeys(Team, 0.0)
 
     def carry_anew(self, place: Point) -> None:
-        """Count the carrier's way from here [m]."""
+        """Measure the carrier's distance from here [m]."""
         self.carry_start, self.carried = place, 0.0
 
     def _follow_carrier(self, ball: BallState, carrier: RobotState | None) -> None:

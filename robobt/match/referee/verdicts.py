@@ -1,4 +1,4 @@
-"""What follows from an event: how play goes on, whether it counts as a foul.
+"""Consequences of an event: the restart, and whether it counts as a foul.
 
 Source: RoboCup SSL rules of 2026, chapter "Offenses"; where they leave it open, what the league's game
 controller was seen to do.
@@ -56,7 +56,7 @@ FOULS = (
         _K.EXCESSIVE_BOT_SUBSTITUTION,
     }
 )
-"""Events that add to a team's fouls, each third of which is a card."""
+"""Events that add to a team's fouls; every third foul costs a card."""
 
 PENALTY_BREACHES = frozenset(
     {
@@ -73,21 +73,21 @@ PENALTY_BREACHES = frozenset(
 """Offences that end a penalty kick: a goal when the defending team commits them, else a failure."""
 
 MEMORY = 2.0
-"""A foul that did not stop play annuls its team's goals for this long. Source: SSL rules [s]."""
+"""Time for which a foul that did not stop play annuls its team's goals [s]. Source: SSL rules."""
 
 HIGHEST_GOAL = 0.15
-"""The ball may not have been higher since its scorers touched it. Source: SSL rules [m]."""
+"""Greatest height of the ball since its scorers touched it [m]. Source: SSL rules."""
 
 
 def resumption_after(field: FieldGeometry, event: RefereeEvent, ball: Point) -> Resumption | None:
-    """Return how play goes on after an event that stops it, None after any other.
+    """Return the restart after an event that stops play, or None after any other event.
 
-    Goals and what happens in placements are the controller's own business.
+    Goals and events of placements are handled by the controller itself.
 
     Args:
         field: the field.
-        event: what happened while the ball was in play.
-        ball: where the ball is now, which an event may tell better as its ``ball_location`` [m].
+        event: the event while the ball was in play.
+        ball: the ball's position now [m]; the event's ``ball_location`` comes first if it has one.
     """
     kind, team, x, y = event.kind, event.team, event.x, event.y
     told = event.details.get("ball_location")

@@ -1,1 +1,1 @@
-"""Results of trials and what they add up to."""
+"""Results of trials and their summaries."""

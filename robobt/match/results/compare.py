@@ -1,4 +1,4 @@
-"""Variants of one scenario against each other, trial by trial from the same starts."""
+"""Comparison of variants of one scenario, paired by trials with the same starts."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ class Difference:
     """A paired difference to the first variant, with its 95 % interval.
 
     Attributes:
-        n: trials that both have the figure in, those that repeat another pair only once.
+        n: number of distinct pairs of trials in which both have the figure.
         mean: mean difference, this variant minus the first; None without such a trial.
-        low, high: its interval; None where the trials, or the differences, are all the same.
+            interval; None if all trials, or all differences, are equal.
     """
 
     n: int
@@ -29,14 +29,14 @@ class Difference:
 
 @dataclass(frozen=True)
 class AgainstFirst:
-    """One variant against the first, paired by trial.
+    """One variant compared with the first, paired by trial.
 
     Attributes:
-        scored: difference of the shares of trials in which blue scores.
+        scored: difference in the share of trials in which blue scores. only_this, only_first: number of
         only_this, only_first: trials in which blue scores with this variant alone, and with the first alone.
-        p: of McNemar's exact test, two-sided; ``holm`` is corrected for the number of variants.
+        p: p value of McNemar's exact two-sided test; ``holm`` is corrected for the number of variants.
         goals: goals of blue minus those of yellow, a trial.
-        to_ball, to_kick: time until the first robot of blue has the ball, and has kicked it [s].
+            time until blue's first robot has the ball, and until it has kicked [s].
     """
 
     scored: Difference
@@ -55,11 +55,11 @@ class Compared:
 
     Attributes:
         trials: how many were played.
-        distinct: how many of them differ from each other; the rest repeat one another.
+        distinct: number of different trials among them; the others repeat these.
         scored: trials in which blue scores.
         outcomes: how the trials ended.
         to_ball, to_kick: as in :class:`AgainstFirst` [s].
-        errors: ticks in which a robot's tree failed; ``first_error`` is the first, None without one.
+        errors: number of ticks in which a robot's tree failed; ``first_error`` is the first error, or None.
         against_first: None for the first variant.
     """
 
@@ -78,7 +78,7 @@ def compare_results(variants: Mapping[str, Sequence[MatchResult]]) -> dict[str, 
     """Return the figures of ``variants``, each compared with the first by trial number.
 
     Raises:
-        ValueError: a variant has no trial, or none that the first has too.
+        ValueError: a variant has no trial, or none in common with the first.
     """
     (first, baseline), *others = variants.items()
     pairs = {label: _paired(results, baseline) for label, results in others}
@@ -111,7 +111,7 @@ def compare_results(variants: Mapping[str, Sequence[MatchResult]]) -> dict[str, 
 def _paired(
     results: Sequence[MatchResult], baseline: Sequence[MatchResult]
 ) -> list[tuple[MatchResult, MatchResult]]:
-    """Return the pairs of trials, those that repeat another pair only once: they tell nothing new."""
+    """Return the distinct pairs of trials; a repeated pair gives no new information."""
     by_trial = {result.trial: result for result in baseline}
     pairs = [(result, by_trial[result.trial]) for result in results if result.trial in by_trial]
     return list({(this.trace, first.trace): (this, first) for this, first in pairs}.values())

@@ -1,6 +1,6 @@
-"""Results on disk: a line a trial, appended as they finish, so that a run can be taken up again.
+"""Results on disk: one line per trial, appended when it finishes, so that a run can be continued.
 
-The first line says what was played; the others are :meth:`MatchResult.to_json`.
+The first line describes the run; the others are :meth:`MatchResult.to_json`.
 """
 
 from __future__ import annotations
@@ -53,17 +53,17 @@ class TrialsFile(Closing, Generic[R]):
     Args:
         kind: class of the results.
         path: the file.
-        scenario: what is played.
+        scenario: the scenario that is played.
         seed: seed of the run.
-        world: address of the world it is played in; None for the built-in simulator.
+        world: address of the world; None for the built-in simulator.
         referee: name of the referee; None for the scenario's own.
 
     Attributes:
-        done: results the file held already, by trial.
+        done: results that the file already held, by trial.
 
     Raises:
-        ResultsFileError: the file holds something else.
-        OSError: it cannot be read or written.
+        ResultsFileError: the file holds results of another run or other data. OSError: it cannot be read or
+        written.
     """
 
     def __init__(
@@ -90,7 +90,7 @@ class TrialsFile(Closing, Generic[R]):
         if referee is not None:
             head["referee"] = referee
         self.path.parent.mkdir(parents=True, exist_ok=True)
-        # A pipe or a device is read for ever.
+        # Reading a pipe or a device would never end.
         if self.path.exists() and not (self.path.is_file() or self.path.is_dir()):
             raise ResultsFileError(f"{self.path}: not an ordinary file, so it holds nothing to go on from")
         kept = self._read(head) if self.path.exists() else 0
@@ -111,7 +111,7 @@ class TrialsFile(Closing, Generic[R]):
             self._file.close()
 
     def add(self, result: R) -> None:
-        """Append a result; it is on disk when this returns."""
+        """Append a result, flushed to disk."""
         self._write(result.to_json())
 
     def _write(self, line: dict[str, object]) -> None:
@@ -120,9 +120,9 @@ class TrialsFile(Closing, Generic[R]):
             self._file.flush()
 
     def _read(self, head: dict[str, object]) -> int:
-        """Read the results in the file and return how much of it is sound [bytes].
+        """Read the results in the file and return the size of its valid part [bytes].
 
-        Damaged lines with sound ones behind them are taken out of the file.
+        Damaged lines followed by valid ones are removed from the file.
         """
         sound: list[bytes] = []
         read = kept = good_until = 0
@@ -161,7 +161,7 @@ class TrialsFile(Closing, Generic[R]):
 
 
 class ResultsFile(TrialsFile[MatchResult]):
-    """A file of :class:`MatchResult`; the arguments are those of :class:`TrialsFile` behind the kind."""
+    """A file of :class:`MatchResult`; the arguments are those of :class:`TrialsFile` after ``kind``."""
 
     def __init__(
         self,
@@ -175,11 +175,11 @@ class ResultsFile(TrialsFile[MatchResult]):
 
 
 def scenario_digest(scenario: Scenario) -> str:
-    """Hash what decides a match; trials and seed are not part of it."""
+    """Hash everything that decides a match; trials and seed are left out."""
     text = scenario.model_dump_json(exclude={"trials", "seed", "description", "on_error"})
     digest = hashlib.blake2b(text.encode(), digest_size=16)
     for _, setup in scenario.robots:
-        # The contents, not only the names: an edited tree is another match.
+        # File contents count, not only names, because an edited tree makes another match.
         for part in contents_of(setup.play):
             digest.update(part)
         if isinstance(setup.substitute, str):

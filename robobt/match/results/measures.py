@@ -1,4 +1,4 @@
-"""What is measured in a match, from true frames and, where a world sees them, kicks."""
+"""Measurements of a match, from true frames and, if the world reports them, kicks."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ from robobt.world.game import GameState, Team
 from robobt.world.state import BallState, Frame, RobotId, RobotState
 
 _KICKED_SHARE, _SURELY_KICKED = 0.25, 1.0
-"""A ball was kicked that leaves its robot with this share of the commanded speed, or this fast [m/s]."""
+"""Share of the commanded speed, or speed [m/s], at which a ball that leaves its robot counts as kicked."""
 
 
 class Measures:
-    """Follows a match frame by frame; frames are seen from blue's side.
+    """Measures a match frame by frame; frames are seen from blue's side.
 
-    ``in_play`` counts the frames among ``ticks`` with the ball in play; ``kicked`` holds who kicked between
-    the last frame and the one before.
+    ``in_play`` counts the frames among ``ticks`` with the ball in play; ``kicked`` has the robots that kicked
+    between the last two frames.
     """
 
     def __init__(self, robots: Mapping[RobotId, object]) -> None:
@@ -40,8 +40,8 @@ class Measures:
     ) -> None:
         """Take in the next true frame.
 
-        ``commands`` are those at the frame before; ``seen`` are the kicks since and when they happened [s],
-        None for a world where they follow from the states and the commands.
+        ``commands`` are the commands at the last frame; ``seen`` are the kicks since then and their times
+        [s], or None for a world where kicks are derived from states and commands.
         """
         self.ticks += 1
         self.kicked.clear()
@@ -67,7 +67,7 @@ class Measures:
                 self._count_kick(identity, time)
 
     def _look_for_kick(self, identity: RobotId, robot: RobotState, truth: Frame, speed: float) -> None:
-        """Count a kick: commanded, near the ball, and the ball now leaves along the heading as not before."""
+        """Count a kick: commanded near the ball, which now starts to leave along the heading."""
         away = _leaving(robot, truth.ball)
         before = self._outgoing.get(identity, 0.0)
         self._outgoing[identity] = away
@@ -91,7 +91,7 @@ class Measures:
 
 
 class Trace:
-    """A hash over the exact true states of a match: two matches with one trace were the same, bit for bit."""
+    """A hash over the exact true states of a match; matches with equal traces are equal bit for bit."""
 
     def __init__(self) -> None:
         self._hash = hashlib.blake2b(digest_size=16)

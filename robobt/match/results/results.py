@@ -1,4 +1,4 @@
-"""What came out of one trial, and of many."""
+"""Results of one trial, and of many."""
 
 from __future__ import annotations
 
@@ -27,11 +27,11 @@ class RobotResult:
     """One robot's figures in one trial.
 
     Attributes:
-        go_to_ball: from the start until the ball first lay in its mouth [s], None when it never did.
-        shoot: from then until its first kick [s], None without one.
-        kicks: how often it kicked.
-        errors: ticks at which its tree failed and the robot was stopped.
-        first_error: the first of them, the node's path and what happened; None without one.
+        go_to_ball: time from the start until it first had the ball in its mouth [s], or None.
+        shoot: time from then until its first kick [s], or None.
+        kicks: number of kicks.
+        errors: number of ticks at which its tree failed and the robot was stopped.
+        first_error: the first error, with the node's path; or None.
         always_failed: the node and the one reason for which its tree failed at every tick, else None.
     """
 
@@ -46,7 +46,7 @@ class RobotResult:
 
     @property
     def total(self) -> float | None:
-        """From the start to the first kick [s]."""
+        """Time from the start to the first kick [s]."""
         return None if self.go_to_ball is None or self.shoot is None else self.go_to_ball + self.shoot
 
 
@@ -55,18 +55,17 @@ class MatchResult:
     """One trial.
 
     Attributes:
-        scenario: its name.
-        trial: which repetition, from 0.
-        seed: what the trial's randomness followed from.
-        outcome: how it ended, one of :class:`robobt.match.ends.Outcome`.
-        time: how long it lasted in the world [s].
-        blue_score, yellow_score: goals.
-        in_play: share of the time in which the ball was in play, 0 to 1.
-        ticks: control periods.
+        scenario: name of the scenario.
+        trial: number of the trial, from 0.
+        seed: seed of the trial.
+        outcome: how the trial ended, one of :class:`robobt.match.ends.Outcome`.
+        time: simulated duration [s]. blue_score, yellow_score: goals.
+        in_play: share of the time with the ball in play, 0 to 1.
+        ticks: number of control periods.
         robots: figures of each robot by its name ("blue 0").
-        trace: hash over every true state; equal traces are equal matches.
-        wall_time: how long it took to play, without compiling [s]; all that may differ between two runs.
-        teams: figures of each team by its name ("blue"), where a referee watched.
+        trace: hash over every true state; equal traces mean equal matches.
+        wall_time: real time of playing, without compilation [s]; only this may differ between two runs.
+        teams: figures of each team by its name ("blue"), if there was a referee.
     """
 
     __pydantic_config__ = _AS_WRITTEN
@@ -86,7 +85,7 @@ class MatchResult:
     teams: Mapping[str, TeamResult] = field(default_factory=dict)
 
     def _repr_html_(self) -> str:
-        """Show itself in a notebook."""
+        """Return the HTML for a notebook."""
         rows = [
             ("outcome", self.outcome),
             ("goals", f"blue {self.blue_score}, yellow {self.yellow_score}"),
@@ -102,7 +101,7 @@ class MatchResult:
 
     @classmethod
     def from_json(cls, data: Mapping[str, object]) -> MatchResult:
-        """Return the result that :meth:`to_json` made the data of.
+        """Return the result from the data of :meth:`to_json`.
 
         Raises:
             ValueError: the data is not such a result.
@@ -133,11 +132,10 @@ def _adapter() -> TypeAdapter[MatchResult]:
 
 @dataclass(slots=True, frozen=True)
 class Rate:
-    """How often something happened.
+    """How often an event happened in trials.
 
-    It did in ``count`` trials, a share ``rate``, with the Wilson interval of 95 % from ``low`` to
-    ``high``. Trials that repeat another one count once for the interval; where all are one and
-    the same there is none.
+    It happened in ``count`` trials, a share ``rate``, with the 95 % Wilson interval from ``low`` to ``high``.
+    Repeated trials count once for the interval; if all trials are the same there is no interval.
     """
 
     count: int
@@ -147,7 +145,7 @@ class Rate:
 
     @classmethod
     def of(cls, happened: Sequence[bool], traces: Sequence[str]) -> Rate:
-        """Return the rate in trials with these traces; 0 when there are none."""
+        """Return the rate in trials with these traces; 0 without trials."""
         different = list(dict(zip(traces, happened, strict=True)).values())
         rate = sum(happened) / len(happened) if happened else 0.0
         if len(different) == 1 < len(happened):
@@ -165,8 +163,8 @@ class Rate:
 class Spread:
     """Mean and variance of a figure.
 
-    Of ``n`` trials that have the figure; ``mean`` is None without any, the sample's ``variance`` with fewer
-    than two.
+    ``n`` is the number of trials that have the figure; ``mean`` is None without any, the sample's
+    ``variance`` is None with fewer than two.
     """
 
     n: int
@@ -198,18 +196,18 @@ class Summary:
     """All trials of a run together.
 
     Attributes:
-        scenario: its name.
-        seed: the run's seed, from which each trial's follows.
+        scenario: name of the scenario.
+        seed: the run's seed, from which the trials' seeds are derived.
         trials: how many were played.
         distinct: how many of them differ from each other; the rest repeat one another.
-        outcomes: how often each outcome happened; only those that did.
-        goals: of each team: ``total``, and ``trials`` in which it scored at all.
-        time: how long the trials lasted [s].
-        in_play: mean share of the time in which the ball was in play.
+        outcomes: rate of each outcome that happened.
+        goals: goals of each team: ``total``, and ``trials`` in which it scored.
+        time: simulated duration of the trials [s].
+        in_play: mean share of the time with the ball in play.
         robots: figures by robot.
         real_time_factor: simulated time over wall time in each process, without compiling; load lowers it.
-        trace: hash over the trials' traces in order; equal for equal runs.
-        teams: by team the figures of :class:`~robobt.match.results.teams.TeamResult` by their names.
+        trace: hash over the trials' traces, in order; equal for equal runs.
+        teams: for each team the figures of :class:`~robobt.match.results.teams.TeamResult`, by name.
     """
 
     scenario: str
@@ -232,7 +230,7 @@ class Summary:
 
 @dataclass(slots=True, frozen=True)
 class GoalCount:
-    """A team's goals: ``total`` of them, and the ``trials`` in which it scored at all."""
+    """A team's ``total`` of goals, and the ``trials`` in which it scored."""
 
     total: int
     trials: Rate
@@ -242,8 +240,8 @@ def summarise(results: Sequence[MatchResult], seed: int = 0) -> Summary:
     """Summarise trials of one scenario, in the order of their numbers.
 
     Args:
-        results: one a trial.
-        seed: the run's, which is told with the figures.
+        results: one per trial.
+        seed: the run's seed, reported with the figures.
 
     Raises:
         ValueError: there is no trial.

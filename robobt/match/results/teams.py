@@ -1,6 +1,6 @@
-"""What each team did in a match, counted as the league's analysts count; from frames alone.
+"""Team statistics of a match, counted from frames as the league's analysts count.
 
-The same counting serves a match that is being played, a recording and a league's log.
+The same code serves a running match, a recording and a league log.
 """
 
 from __future__ import annotations
@@ -23,27 +23,27 @@ from robobt.world.rules import ball_out
 from robobt.world.state import BallState, Frame, RobotId, RobotState
 
 _KICKED = 1.0
-"""A ball that goes away from a robot faster than this was kicked, not lost [m/s]."""
+"""A ball that leaves a robot faster than this counts as kicked, not lost [m/s]."""
 
 _BOUNCES = 0.1
-"""A ball that leaves a robot so soon, and no faster than it came, has bounced off it [s]."""
+"""A ball that leaves a robot within this time, no faster than it came, counts as bounced off [s]."""
 
 _SHOT = 2.0
-"""A ball that is faster than this on its way into the goal is a shot [m/s]."""
+"""A ball faster than this on its way into the goal counts as a shot [m/s]."""
 
 _MEANT = 1.0
-"""A kick whose line passes a team-mate ahead within this distance is a pass [m]."""
+"""A kick whose line passes a team-mate ahead within this distance counts as a pass [m]."""
 
 _SHORTEST_PASS = 0.3
-"""A ball that a team-mate touches nearer to where it was kicked was handed on, not passed [m]."""
+"""A ball that a team-mate touches closer than this to the kick counts as handed over, not passed [m]."""
 
 _TAKEN = (Restart.KICKOFF, Restart.FREE_KICK)
 
 _STRIDE = 0.1
-"""The way of robots is measured in straight pieces of this time [s]."""
+"""Robots' distance is measured in straight pieces of this duration [s]."""
 
 _JUMP = 1.0
-"""A robot that is farther from where it was a piece before was put there [m]."""
+"""A robot that moved farther than this within one piece was placed there by hand [m]."""
 
 
 @dataclass(slots=True)
@@ -52,18 +52,18 @@ class TeamResult:
 
     Attributes:
         goals: the score.
-        passes: kicks towards a team-mate that were no shots (a ball that bounces or slips off was not
-            kicked); ``passes_completed`` of them were next touched by a team-mate, ``passes_intercepted``
-            by an opponent.
+        passes: kicks towards a team-mate that were not shots (a ball that bounces or slips off is not
+            kicked); ``passes_completed`` were next touched by a team-mate, ``passes_intercepted`` by an
+            opponent.
         shots_on_goal: kicks of at least 2 m/s whose line led into the goal.
-        expected_goals: sum of the probabilities that a goalkeeper like the real ones lets them in,
-            by the rater ``expected_goal``.
-        possession: share of the time in play in which this team had touched the ball last.
-        distance: that its robots drove, together [m].
-        fouls, yellow_cards, red_cards: as the referee counts them.
-        placements, placements_succeeded: ball placements that it was asked for, and that it did.
-        restarts, restarts_kept: own kick-offs and free kicks that came into play, taken or not; those
-            in which the next to touch the ball, the kicker aside, was of this team.
+        expected_goals: sum of the shots' probabilities against a goalkeeper like the real ones, by the rater
+            ``expected_goal``.
+        possession: share of the time in play in which this team was the last to touch the ball.
+        distance: total distance that its robots drove [m]. fouls, yellow_cards, red_cards: as the referee
+        counts them. placements, placements_succeeded: ball placements that it was asked for, and those that
+        succeeded. restarts, restarts_kept: own kick-offs and free kicks after which the ball came into play,
+        taken or not; those after which the first robot other than the kicker to touch the ball was of this
+        team.
     """
 
     __pydantic_config__ = ConfigDict(extra="forbid", allow_inf_nan=False)
@@ -87,7 +87,7 @@ class TeamResult:
 
 @dataclass(slots=True)
 class _Flight:
-    """A kicked ball that nobody has touched yet."""
+    """A kicked ball that no robot has touched yet."""
 
     kicker: RobotId
     start: Point
@@ -95,7 +95,7 @@ class _Flight:
 
 
 class TeamStatistics:
-    """Follows a match frame by frame; frames are true and seen from blue's side."""
+    """Counts a match frame by frame; frames are true and seen from blue's side."""
 
     def __init__(self) -> None:
         self._teams = {team: TeamResult() for team in Team}
@@ -116,7 +116,7 @@ class TeamStatistics:
         self._rater = ExpectedGoal()
 
     def update(self, frame: Frame, game: GameState, events: Iterable[ReportedEvent] = ()) -> None:
-        """Take in the next frame, the state of the game as of it and what happened in it."""
+        """Take in the next frame with its state of the game and its events."""
         self._touches.watch(frame)
         for event in events:
             self._count(event)
@@ -132,7 +132,7 @@ class TeamStatistics:
         else:
             if self._flight is not None and self._flight.is_pass:
                 self._teams[self._flight.kicker.team].passes += 1
-            # The kick that takes a restart is one that leaves its taker once the ball is in play.
+            # The kick of a restart counts when the ball leaves its kicker once it is in play.
             self._holder, self._flight = self._taker, None
         self._before, self._last = frame, self._touches.last
 
@@ -197,7 +197,7 @@ class TeamStatistics:
         else:
             last = self._touches.last
             if last is not None and last != self._last:
-                # With one touch: between two frames it came and went.
+                # One-touch contact: the ball came and left between two frames.
                 self._touched(last, frame)
                 self._holder = last
             if self._holder is not None:
@@ -225,7 +225,7 @@ class TeamStatistics:
             figures.passes_completed += 1
 
     def _left(self, kicker: RobotId, frame: Frame) -> None:
-        """Judge the ball that has just left a robot: lost, shot or passed."""
+        """Decide whether the ball that has just left a robot was lost, shot or passed."""
         before = self._before
         if before is None or frame.ball.speed < _KICKED:
             return
@@ -251,12 +251,12 @@ class TeamStatistics:
 
 
 def _going_away(ball: BallState, me: RobotState) -> float:
-    """Return how fast the ball moves as seen from the robot's mouth, which may drive and turn [m/s]."""
+    """Return the ball's speed relative to the robot's mouth, which may drive and turn [m/s]."""
     return hypot(ball.vx - me.vx + me.omega * (ball.y - me.y), ball.vy - me.vy - me.omega * (ball.x - me.x))
 
 
 def _goal_crossing(view: Frame) -> float | None:
-    """Return the y at which the ball's line enters the opponents' goal [m]; None where it does not."""
+    """Return the y at which the ball's line enters the opponents' goal [m], or None if it does not."""
     ball, field = view.ball, view.field
     y = line_crossing_x(ball.position, atan2(ball.vy, ball.vx), field.half_length)
     return None if y is None or abs(y) >= field.goal_width / 2 else y

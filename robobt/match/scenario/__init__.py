@@ -1,1 +1,1 @@
-"""Scenario files: who plays what where, until when."""
+"""Scenario files: robots, plays, starts and end conditions."""

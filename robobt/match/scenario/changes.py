@@ -1,4 +1,4 @@
-"""Scenarios with other values, by the names of the file: what command lines change."""
+"""Scenarios with changed values, given by the file's field names, as command lines do."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ from robobt.world.game import Team
 
 
 def changed(scenario: Scenario, changes: Mapping[str, object]) -> Scenario:
-    """Return the scenario with other values.
+    """Return the scenario with changed values.
 
-    Names are those of the file, with dots for what lies inside (``ends.time_limit``,
-    ``simulator.preset``). A robot's begin with the robot (``blue 0.play``, ``yellow 0.limits.max_speed``);
-    one that is no field of a robot is a parameter of its play (``blue 0.rater``).
+    Names are the file's field names, with dots for nested fields (``ends.time_limit``, ``simulator.preset``).
+    Names of a robot's fields begin with the robot (``blue 0.play``, ``yellow 0.limits.max_speed``); a name
+    that is no field of a robot is a parameter of its play (``blue 0.rater``).
 
     Raises:
         ScenarioError: there is no such field, or the value does not fit.
@@ -34,9 +34,9 @@ def changed(scenario: Scenario, changes: Mapping[str, object]) -> Scenario:
 
 
 def with_team(scenario: Scenario, team: Team, play: str | None, params: Mapping[str, object]) -> Scenario:
-    """Return the scenario with another play, or other parameters, for a team's robots but its goalkeeper.
+    """Return the scenario with another play or parameters for a team's robots, except its goalkeeper.
 
-    A goalkeeper that is alone is changed too.
+    A goalkeeper without team-mates is changed too.
 
     Raises:
         ScenarioError: the team has no robot, or the play or a parameter does not fit.
@@ -61,7 +61,7 @@ def _with_robot(scenario: Scenario, robot: str, name: str, value: object) -> Sce
 
 
 def _current(setup: RobotSetup | None, key: str) -> object:
-    """Return a field of a robot, or a parameter of its play; of one that is a name, the mapping with it."""
+    """Return a robot's field or its play's parameter; a parameter given by name as its mapping."""
     if setup is None or key in RobotSetup.model_fields:
         return getattr(setup, key, None)
     given = setup.params.get(key, setup.default_of(key))
@@ -86,7 +86,7 @@ def _with_field(scenario: Scenario, name: str, value: object) -> Scenario:
 
 
 def _frozen(value: object) -> object:
-    """Return plain data with tuples for lists, as the fields of a scenario have them."""
+    """Return plain data with tuples for lists, as in the fields of a scenario."""
     if isinstance(value, Mapping):
         return {name: _frozen(inner) for name, inner in value.items()}
     return tuple([_frozen(item) for item in value]) if isinstance(value, list | tuple) else value

@@ -1,4 +1,4 @@
-"""Placing robots and ball where a scenario's starts allow, without anything touching."""
+"""Placing robots and ball within a scenario's starts, without contact."""
 
 from __future__ import annotations
 
@@ -16,16 +16,16 @@ from robobt.world.protocol import Placement
 from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS, RobotId
 
 HELD_DISTANCE = 0.098
-"""Centre of a robot to the centre of the ball in its mouth at the start [m]."""
+"""Distance from a robot's centre to a ball in its mouth at the start [m]."""
 
 _TRIES = 1000
 
 
 def check_starts(field: FieldGeometry, robots: Mapping[RobotId, RobotStart], ball: BallStart) -> None:
-    """Check what no random number can help: places off the field, fixed starts that overlap.
+    """Check for errors that no random draw can avoid: places off the field, fixed starts that overlap.
 
     Raises:
-        FieldError: with the place in the scenario ("robots.blue.0.start").
+        FieldError: with the scenario's field ("robots.blue.0.start").
     """
     taken: list[tuple[str, float, float, float]] = []
     holder = _robot_called(ball.held_by)
@@ -54,10 +54,10 @@ def check_starts(field: FieldGeometry, robots: Mapping[RobotId, RobotStart], bal
 
 
 class Placer:
-    """A sampler of one placement: what is fixed first, then the ball, then the other robots.
+    """Samples one placement: fixed objects first, then the ball, then the other robots.
 
     Robots' starts are in their own team's view; ``clearance`` is the least gap between hulls, and to the
-    ball, where places are random [m]; all chance comes from ``rng``.
+    ball, for random places [m]; ``rng`` is the only source of randomness.
     """
 
     def __init__(
@@ -76,7 +76,7 @@ class Placer:
         self._ball: Point | None = None
 
     def place(self) -> Placement:
-        """Sample everything's place, in world coordinates."""
+        """Sample the places of robots and ball, in world coordinates."""
         holder = self._holder
         if isinstance(self._ball_start.position, tuple):
             self._put_ball(self._ball_start.position)
@@ -102,7 +102,7 @@ class Placer:
 
     def _sample_robot(self, robot: RobotId) -> None:
         position = self._starts[robot].position
-        # The ball in its mouth needs room too, whichever way it looks.
+        # The ball in its mouth needs space too, for every heading.
         radius = ROBOT_RADIUS + (2 * BALL_RADIUS if robot == self._holder else 0.0)
         for _ in range(_TRIES):
             place = _turned(robot, self._sample(position, robot))
@@ -163,10 +163,10 @@ def _full(position: object) -> str:
 
 
 def check_inside(position: object, field: FieldGeometry, where: str) -> None:
-    """Check that places lie on the field: a place, or all of a box or the centre of a disc.
+    """Check that places are on the field: a point, a whole box, or the centre of a disc.
 
     Raises:
-        FieldError: one does not; ``where`` is its field.
+        FieldError: a place is not; ``where`` is its field.
     """
     points: Sequence[Point] = ()
     if isinstance(position, Box):
@@ -182,7 +182,7 @@ def check_inside(position: object, field: FieldGeometry, where: str) -> None:
 
 
 def _turned(robot: RobotId, place: Point) -> Point:
-    """Turn from the robot's view to the world's, or back: half a turn is its own inverse."""
+    """Convert between the robot's view and the world's; half a turn is its own inverse."""
     return place if robot.team is Team.BLUE else (-place[0], -place[1])
 
 

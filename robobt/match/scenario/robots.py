@@ -1,4 +1,4 @@
-"""The robots of a scenario: what each plays, within which limits and from where."""
+"""The robots of a scenario: play, limits and start of each."""
 
 from __future__ import annotations
 
@@ -33,11 +33,11 @@ from robobt.world.limits import RobotLimits
 from robobt.world.state import RobotId
 
 UNBUILT: Mapping[str, object] = {}
-"""The context of a validation that builds no trees, and so loads no models."""
+"""Context of a validation that builds no trees and so loads no models."""
 
 
 class _Unplayed:
-    """The tree that validation built, until it is played; no part of what a set-up says, nor sent with it."""
+    """The tree built by validation, until it is played; it is not part of a set-up and not sent with it."""
 
     def __init__(self) -> None:
         self.tree: Behaviour | None = None
@@ -67,8 +67,8 @@ class RobotSetup(Part):
     )
     substitute: dict[str, object] | str = Field(
         default_factory=dict,
-        description="nodes of its tree that follow a script instead, by the pattern of their paths; "
-        "or a file of such rules beside the scenario",
+        description="nodes of its tree to replace by scripts, by patterns of their paths; or a file of such "
+        "rules beside the scenario",
     )
     start: RobotStart = Field(description="pose at the start, in the own team's view")
     _unplayed: _Unplayed = PrivateAttr(default_factory=lambda: _Unplayed())
@@ -94,7 +94,7 @@ class RobotSetup(Part):
         except (TreeFileError, WiringError) as error:
             raise FieldError("play", message_of(error)) from error
         except ValidationError as error:
-            # Settings of an object that the play makes of its parameters, such as a rater.
+            # Settings of an object that the play builds from its parameters, such as a rater.
             field, problem = first_problem(error, BaseModel)
             if field.partition(".")[0] not in self.params:
                 raise FieldError(self._blamed(error), f"{field}: {problem}") from error
@@ -107,13 +107,13 @@ class RobotSetup(Part):
         return self
 
     def __copy__(self) -> Self:
-        """Return a copy that may be changed, and so has no tree yet."""
+        """Return a copy without a tree, because it may be changed."""
         copied = super().__copy__()
         copied._unplayed = _Unplayed()
         return copied
 
     def _blamed(self, error: Exception) -> str:
-        """Return the field of the parameter that makes building the tree fail, if it is one alone."""
+        """Return the field of the parameter that makes building the tree fail, if exactly one does."""
         if not self.params:
             return "play"
         blamed = []
@@ -123,16 +123,16 @@ class RobotSetup(Part):
                 self.model_copy(update={"params": others})._build()
                 blamed.append(name)
         if not blamed:
-            # Several are wrong, or it is one that the play needs: the message tells a file or name.
+            # Several are wrong, or the play needs the parameter: the message names the file or play.
             said = str(error)
             blamed = [name for name, value in self.params.items() if isinstance(value, str) and value in said]
         return f"params.{blamed[0]}" if len(blamed) == 1 else "params"
 
     def build_tree(self) -> Behaviour:
-        """Return a tree of this robot's play that nobody else gets.
+        """Return a new tree of this robot's play.
 
-        The first is the one that validation built. Each match after that needs a tree of its own, for
-        nodes keep what they have done; and so does each process, for trees are not sent to another.
+        The first call returns the tree that validation built. Each further match needs its own tree, because
+        nodes keep state; so does each process, because trees are not sent between processes.
         """
         tree, self._unplayed.tree = self._unplayed.tree, None
         return self._build() if tree is None else tree
@@ -144,16 +144,16 @@ class RobotSetup(Part):
         try:
             return substitute(tree, self.substitute)
         except TreeFileError as error:
-            # Rules in the scenario itself are in no file of their own.
+            # Rules within the scenario have no file.
             problem = str(error) if isinstance(self.substitute, str) else error.problem
             raise _SubstitutionError(problem) from error
 
     def owner(self) -> Namespace | None:
-        """Return whose names its tree finds first: those of its play's Python files, if it has some."""
+        """Return the names that its tree finds first: those of its play's Python files, if any."""
         return private_files(self.play)
 
     def changed(self, changes: Mapping[str, object]) -> RobotSetup:
-        """Return the setup with other values; of another play, the parameters that it has too stay."""
+        """Return the setup with changed values; a new play keeps the parameters that it also has."""
         data = {name: getattr(self, name) for name in self.model_fields_set}
         data |= {name: value for name, value in changes.items() if name in RobotSetup.model_fields}
         params = {name: value for name, value in changes.items() if name not in RobotSetup.model_fields}
@@ -164,12 +164,12 @@ class RobotSetup(Part):
         return RobotSetup.model_validate(data)
 
     def default_of(self, parameter: str) -> object:
-        """Return the default of a parameter of the play, None where it has none."""
+        """Return the default of a parameter of the play, or None."""
         known = {each.name: each.default for each in parameters_of(find_play(self.play)) if not each.required}
         return known.get(parameter)
 
     def _params_in(self, play: object) -> dict[str, object]:
-        """Return the parameters that another play has too; of none that can be read, all."""
+        """Return the parameters that another play also has, or all if that play cannot be read."""
         if play == self.play or not isinstance(play, str) or problem_with_play(play):
             return self.params
         try:
@@ -179,7 +179,7 @@ class RobotSetup(Part):
         return {name: value for name, value in self.params.items() if name.partition(".")[0] in known}
 
     def limits_over(self, base: RobotLimits) -> RobotLimits:
-        """Return the robot's limits, with those of ``base`` where the scenario gives none."""
+        """Return the robot's limits, from ``base`` where the scenario gives none."""
         if self.limits is None:
             return base
         return base.model_copy(update=self.limits.model_dump(exclude_unset=True))
@@ -217,7 +217,7 @@ class Robots(Part):
         return self.blue if team is Team.BLUE else self.yellow
 
     def replaced(self, changed: Mapping[RobotId, RobotSetup]) -> Robots:
-        """Return the robots with some of them replaced, in the same order."""
+        """Return the robots, some of them replaced, in the same order."""
         return Robots(
             blue=tuple([changed.get(RobotId(Team.BLUE, robot.number), robot) for robot in self.blue]),
             yellow=tuple([changed.get(RobotId(Team.YELLOW, robot.number), robot) for robot in self.yellow]),

@@ -1,4 +1,4 @@
-"""Scenario files: who plays what where, until when. YAML in, a validated :class:`Scenario` out."""
+"""Scenario files: YAML with robots, plays, starts and ends, read as a validated :class:`Scenario`."""
 
 from __future__ import annotations
 
@@ -26,18 +26,18 @@ from robobt.world.protocol import Placement
 from robobt.world.state import RobotId
 
 MAX_TRIALS = 100_000
-"""Most trials a scenario or a run may ask for."""
+"""Largest number of trials of a scenario or a run."""
 
 MAX_SEED = 2**53 - 1
-"""Largest seed: what every JSON reader still reads exactly."""
+"""Largest seed, which every JSON reader still reads exactly."""
 
 
 class ScenarioError(ConfigError):
-    """A scenario that cannot be played; the file is the scenario's name when it came from no file."""
+    """A scenario cannot be played; ``file`` is the scenario's name if it came from no file."""
 
 
 class Ends(Part):
-    """Conditions that end a trial; the first that holds does."""
+    """Conditions that end a trial; the first one that is met ends it."""
 
     time_limit: float = Field(gt=0, le=3600, description="longest trial [s]")
     goal: bool | None = Field(None, description="a goal; by default where there is no referee")
@@ -45,39 +45,38 @@ class Ends(Part):
         None, description="the ball has left the field in full; by default where there is no referee"
     )
     held_by_goalkeeper: float | None = Field(
-        None, ge=0, le=60, description="a goalkeeper has had the ball for this long, or has kicked it [s]"
+        None, ge=0, le=60, description="a goalkeeper has had the ball for this time, or has kicked it [s]"
     )
     ball_at_rest: float | None = Field(
-        None, ge=0, le=60, description="after a kick the ball has lain still for this long [s]"
+        None, ge=0, le=60, description="after a kick the ball has been at rest for this time [s]"
     )
     score_limit: int | None = Field(None, ge=1, le=100, description="a team has this many goals")
     placement: bool = Field(False, description="a ball placement is over, whether it succeeded or not")
 
 
 class Scenario(Part):
-    """A set-up that can be played any number of times.
+    """A set-up for matches that can be played any number of times.
 
     A robot's start is in its own team's view (own goal at -x), the ball's in
     world coordinates, which are blue's view. SI units.
     """
 
-    name: str = Field("", max_length=80, description="what it is called; by default the file's name")
+    name: str = Field("", max_length=80, description="name of the scenario; by default the file's name")
     description: str = Field("", max_length=2000)
     field: FieldGeometry = Field(DIVISION_B, description="a preset's name or dimensions [m]")
     simulator: dict[str, object] = Field(
         {"preset": "default"},
-        description="a preset's name, or preset, realism and settings to change; for the world factory",
+        description="a preset's name, or preset, realism and changed settings; for the world factory",
     )
     period: float = Field(0.025, ge=0.005, le=0.1, description="control period [s]")
     predict: bool = Field(
         True,
-        description="whether a team that sees late is shown where everything is by now, as follows from "
-        "the commands on their way",
+        description="whether delayed frames are predicted to the present from the commands on their way",
     )
-    seed: int = Field(0, ge=0, le=MAX_SEED, description="what every trial's randomness follows from")
-    trials: int = Field(1, ge=1, le=MAX_TRIALS, description="how often it is played by default")
+    seed: int = Field(0, ge=0, le=MAX_SEED, description="seed from which every trial's randomness is derived")
+    trials: int = Field(1, ge=1, le=MAX_TRIALS, description="default number of trials")
     robots: Robots
-    ball: BallStart = Field(BallStart(position=(0.0, 0.0)), description="where the ball starts")
+    ball: BallStart = Field(BallStart(position=(0.0, 0.0)), description="start of the ball")
     clearance: float = Field(
         0.05, ge=0, le=2, description="least gap between hulls, and to the ball, for random starts [m]"
     )
@@ -86,7 +85,7 @@ class Scenario(Part):
         None, description="true or settings for a referee on the field, none for free play"
     )
     on_error: Literal["stop", "raise"] = Field(
-        "stop", description="what an exception in a tree does: stop that robot for the tick, or end the match"
+        "stop", description="effect of an exception in a tree: stop that robot for the tick, or end the match"
     )
     _source: str = PrivateAttr("")
 
@@ -131,7 +130,7 @@ class Scenario(Part):
         return self
 
     def _check_endless(self, referee: RefereeSettings) -> None:
-        """Refuse what a referee would wait for without end."""
+        """Refuse settings for which a referee would wait forever."""
         robots = {robot for robot, _ in self.robots}
         for team in Team:
             there = sum(robot.team is team for robot in robots)
@@ -161,20 +160,20 @@ class Scenario(Part):
 
     @property
     def source(self) -> str:
-        """Return the file it came from, or its name."""
+        """Return the scenario's file, or its name without a file."""
         return self._source or self.name or "scenario"
 
     def error(self, problem: str, field: str = "") -> ScenarioError:
-        """Return an error about this scenario: the ``problem``, and the ``field`` it is in, if any."""
+        """Return an error about this scenario: the ``problem`` and its ``field``, if any."""
         return ScenarioError(self.source, problem, field)
 
     def with_robot(self, robot: str | RobotId, /, **changes: object) -> Scenario:
-        """Return the scenario with one robot changed; this one stays as it is.
+        """Return the scenario with one robot changed; this scenario stays unchanged.
 
         ``scenario.with_robot("blue 0", rater="open_angle")`` gives its play another parameter,
-        ``scenario.with_robot("blue 0", play="attack_nn", limits={"max_speed": 2.0})`` changes
-        the robot itself. What is not named stays, the other parameters of the play included, and
-        of another play those that it has too.
+        ``scenario.with_robot("blue 0", play="attack_nn", limits={"max_speed": 2.0})`` changes the robot
+        itself. Everything not named stays, including the play's other parameters; a new play keeps the
+        parameters that it also has.
 
         Args:
             robot: which robot, as "blue 0".
@@ -210,18 +209,18 @@ class Scenario(Part):
         return self.model_copy(update={"ends": self.ends.model_copy(update={"time_limit": time_limit})})
 
     def without_referee(self) -> Scenario:
-        """Return the scenario without a referee of its own, as where a game controller decides."""
+        """Return the scenario without its own referee, for matches under a game controller."""
         return self.model_copy(update={"referee": None})
 
     def goalkeepers(self) -> dict[Team, int]:
-        """Return the numbers of the teams' goalkeepers, for teams that have one."""
+        """Return the goalkeepers' numbers, for teams that have one."""
         return {robot.team: robot.number for robot, setup in self.robots if setup.goalkeeper}
 
     def place(self, rng: np.random.Generator) -> Placement:
-        """Sample where everything stands in one trial, in world coordinates; ``rng`` decides.
+        """Sample the placement of one trial, in world coordinates, from ``rng``.
 
         Raises:
-            ScenarioError: an object found no free place in a bounded number of tries.
+            ScenarioError: no free place was found for an object in a limited number of tries.
         """
         try:
             return self._placer(rng).place()
@@ -230,11 +229,11 @@ class Scenario(Part):
 
 
 def load_scenario(source: str | Path, *, build: bool = True) -> Scenario:
-    """Load a scenario from a YAML file or, where there is no such file, a bundled one by its name.
+    """Load a scenario from a YAML file or, if there is no such file, a bundled one by its name.
 
     Args:
-        source: the file, or the name; ``robobt scenarios`` lists those.
-        build: whether to see that the robots' trees can be built, for which their models are loaded.
+        source: the file, or the name of a bundled scenario.
+        build: whether to check that the robots' trees can be built, which loads their models.
 
     Raises:
         ScenarioError: the file cannot be read or is no scenario; it names the field or line.
@@ -251,14 +250,14 @@ def load_scenario(source: str | Path, *, build: bool = True) -> Scenario:
     if missing:
         raise ScenarioError(where, f"no such file or bundled scenario; {unknown_name(where, bundled)}")
     data = read_yaml(path, ScenarioError)
-    # From here, not from the scenario's folder.
+    # Relative to the working folder, not to the scenario's folder.
     rename_files(data, lambda file: str(path.parent / file))
     scenario = scenario_from(data, str(path), build=build)
     return scenario if scenario.name else scenario.model_copy(update={"name": path.stem})
 
 
 def scenario_from(data: object, source: str, *, build: bool = True) -> Scenario:
-    """Make a scenario of plain data, as a YAML or JSON file holds it; with ``build`` its robots' trees too.
+    """Make a scenario from the plain data of a YAML or JSON file; with ``build`` its trees too.
 
     Raises:
         ScenarioError: the data is no scenario; the message names the source and the field.
@@ -266,7 +265,7 @@ def scenario_from(data: object, source: str, *, build: bool = True) -> Scenario:
     if not isinstance(data, dict):
         raise ScenarioError(source, "a scenario is a mapping of fields")
     try:
-        # Strict JSON: lists fit tuples, integers fit floats, and nothing else is converted.
+        # Strict JSON: lists are accepted as tuples, integers as floats, and nothing else is converted.
         scenario = Scenario.model_validate_json(
             json.dumps(data), strict=True, context=None if build else UNBUILT
         )

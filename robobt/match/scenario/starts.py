@@ -1,7 +1,6 @@
-"""Where robots and ball may stand at the start: fixed places and distributions.
+"""Starts of robots and ball: fixed places and distributions.
 
-A robot's start is in its own team's view: its goal at -x. A start can be sampled
-and printed.
+A robot's start is in its own team's view, with its goal at -x. A start can be sampled and printed.
 """
 
 from __future__ import annotations
@@ -18,7 +17,7 @@ from robobt.world.geometry import Point, direction
 
 
 class Part(Settings):
-    """A part of a scenario: unchangeable, strict about types, no unknown keys, finite numbers."""
+    """A part of a scenario: immutable, strictly typed, without unknown keys, with finite numbers."""
 
     model_config = ConfigDict(strict=True)
 
@@ -42,7 +41,7 @@ _Angles = Annotated[tuple[_Angle, _Angle], AfterValidator(_ordered)]
 
 
 class Box(Part):
-    """Anywhere in a rectangle, uniformly."""
+    """A uniform distribution over a rectangle."""
 
     x: _Range = Field(description="least and greatest x [m]")
     y: _Range = Field(description="least and greatest y [m]")
@@ -56,7 +55,7 @@ class Box(Part):
 
 
 class Disc(Part):
-    """Anywhere in a disc, uniformly."""
+    """A uniform distribution over a disc."""
 
     center: Place = Field(description="x, y [m]")
     radius: float = Field(gt=0, le=50, description="[m]")
@@ -71,9 +70,9 @@ class Disc(Part):
 
 
 class Around(Part):
-    """At some distance and bearing from something, both uniform."""
+    """A uniform distance and bearing from a point."""
 
-    around: Literal["ball", "own goal", "their goal"] = Field(description="what it is around")
+    around: Literal["ball", "own goal", "their goal"] = Field(description="the object that it is around")
     distance: _Distances = Field(description="least and greatest distance [m]")
     bearing: _Angles = Field(
         (-pi, pi), description="least and greatest direction from there, from +x counter-clockwise [rad]"
@@ -92,10 +91,10 @@ class Around(Part):
 
 
 class Anywhere(Part):
-    """Anywhere a ball may lie within the walls, uniformly, a share of it where it is hard to get at."""
+    """A uniform distribution of the ball within the walls, with a share at places that are hard to reach."""
 
     at_walls: float = Field(
-        ge=0, le=1, description="share that lies at a wall, in a corner or in a goal, each as likely"
+        ge=0, le=1, description="share at walls, in corners and in goals, each equally likely"
     )
 
     def sample(self, rng: np.random.Generator, field: FieldGeometry) -> Point:
@@ -105,7 +104,7 @@ class Anywhere(Part):
         side_x, side_y = (float(side) for side in rng.choice((-1.0, 1.0), 2))
         goal = field.goal_width / 2 - _OFF_WALL
         if rng.random() >= self.at_walls:
-            # Not on the goal line between the posts either, where there may be a post.
+            # Not on the goal line between the posts either, because a post may be there.
             inside = field.half_length - _OFF_WALL if abs(y * most_y) < field.goal_width else most_x
             return (x * inside, y * most_y)
         kind = rng.integers(3)
@@ -123,7 +122,7 @@ class Anywhere(Part):
 
 
 _OFF_WALL = 0.025
-"""From a wall to the centre of a ball that lies at it [m]."""
+"""Distance from a wall to the centre of a ball at it [m]."""
 
 
 def _position_kind(value: object) -> str:
@@ -157,7 +156,7 @@ Heading = Annotated[
     | Annotated[Literal["towards ball", "towards goal"], Tag("towards")],
     Discriminator(_heading_kind),
 ]
-"""A fixed heading, a range of them, or what to look at [rad]."""
+"""A fixed heading, a range of headings, or a target to face [rad]."""
 
 
 class RobotStart(Part):

@@ -1,4 +1,4 @@
-"""A scenario with nodes of its robots' trees replaced by scripts, to see what depends on them."""
+"""Replace nodes of the robots' trees by scripts, to see what depends on them."""
 
 from __future__ import annotations
 
@@ -9,17 +9,16 @@ from robobt.match.scenario.scenario import Scenario
 
 
 def substituted(scenario: Scenario, rules: Iterable[tuple[str, str, object]]) -> Scenario:
-    """Return the scenario with more substitution rules, ahead of those it has.
+    """Return the scenario with additional substitution rules, ahead of its own.
 
     Args:
-        scenario: stays as it is.
-        rules: for each the robot ("blue 0", or a team's name for all of its robots), the pattern of
-            the nodes' paths, and a status or a list of them, as in
-            :func:`~robobt.tree.devtools.read_substitutions`.
+        scenario: the scenario, which stays unchanged.
+        rules: each has the robot ("blue 0", or a team's name for all its robots), the pattern of the nodes'
+            paths, and a status or a list of statuses, as in :func:`~robobt.tree.devtools.read_substitutions`.
 
     Raises:
-        ScenarioError: there is no such robot or node, the status is none, or another node needs
-            what a replaced one would have written.
+        ScenarioError: there is no such robot, node or status, or another node needs an entry that a replaced
+        node would have written.
     """
     added: dict[str, dict[str, object]] = {str(robot): {} for robot, _ in scenario.robots}
     for who, pattern, script in rules:

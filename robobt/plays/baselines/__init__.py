@@ -1,1 +1,1 @@
-"""Plays that stay as they were, to measure new ones against; a test holds their decisions fast."""
+"""Frozen plays to measure new plays against; a test pins their decisions."""

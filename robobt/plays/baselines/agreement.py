@@ -1,7 +1,7 @@
-"""Who goes for the ball and who marks whom, as the team of November 2026 agreed on it.
+"""Assignment of attacker and markers as in the team of November 2026.
 
-The first robot that asks in a frame decides for all. Robots enter themselves when they first ask, so a team
-may have any size. Choices stay until another is clearly better, so that two robots do not take turns.
+The first robot that asks in a frame decides for all. Robots register at their first request, so a team may
+have any size. Choices stay until another is clearly better, so that two robots do not alternate.
 """
 
 from __future__ import annotations
@@ -16,26 +16,26 @@ from robobt.world.rules import has_ball, in_own_defense_area, in_their_defense_a
 from robobt.world.state import Frame, RobotId, RobotState
 
 SWITCH_GAIN = 0.15
-"""Another robot goes for the ball when it is there so much sooner [s]."""
+"""Another robot takes over the ball if it arrives this much sooner [s]."""
 
 _PACE = 2.0
-"""Speed that a robot makes on its way to the ball, starts and stops included [m/s]."""
+"""Mean speed of a robot on its way to the ball, including start and stop [m/s]."""
 
 _ROLLS = 0.3
 _AHEAD = (0.0, 0.2, 0.4, 0.7, 1.0, 1.5, 2.0)
-"""When a rolling ball is looked for [s]."""
+"""Times at which a rolling ball's position is predicted [s]."""
 
 _DETOUR = 0.3
-"""Most that it takes a robot to get behind the ball first [s]."""
+"""Longest additional time for a robot to get behind the ball first [s]."""
 
 _HELD = 0.5
-"""How much sooner a robot counts that has the ball [s]."""
+"""Bonus for the robot that has the ball [s]."""
 
 _MARK_GAIN = 0.3
-"""Another robot marks an opponent when it is so much nearer to it [m]."""
+"""Another robot takes over marking an opponent if it is this much closer [m]."""
 
 _REACH = 0.06
-"""Nobody but a goalkeeper goes for a ball in a defence area or this near to one [m]."""
+"""Only a goalkeeper goes for a ball in a defence area or this close to one [m]."""
 
 MARK_FROM = 0.5
 """Opponents are marked up to this x: the own half and a little more [m]."""
@@ -43,12 +43,12 @@ MARK_FROM = 0.5
 
 @dataclass(slots=True)
 class Agreement:
-    """What the robots of a team remember of it.
+    """The team's state of the assignment.
 
     Attributes:
-        farthest: of each robot that may go for the ball the largest x of the ball at which it does [m].
+        farthest: for each robot that may go for the ball, the largest x of the ball at which it does [m].
         markers: numbers of the robots that mark opponents.
-        frame: the frame that it holds for.
+        frame: the frame for which it was computed.
     """
 
     farthest: dict[int, float] = field(default_factory=dict)
@@ -57,7 +57,7 @@ class Agreement:
 
 
 def enter_attacker(team: TeamStore, number: int, farthest: float | None) -> None:
-    """Let a robot go for the ball where its x is at most ``farthest`` [m], None for anywhere."""
+    """Register a robot to go for the ball if the ball's x is at most ``farthest`` [m], None for any x."""
     agreed = team.shared(Agreement)
     if number not in agreed.farthest:
         agreed.farthest[number] = inf if farthest is None else farthest
@@ -66,7 +66,7 @@ def enter_attacker(team: TeamStore, number: int, farthest: float | None) -> None
 
 
 def enter_marker(team: TeamStore, number: int) -> None:
-    """Let a robot mark opponents."""
+    """Register a robot to mark opponents."""
     agreed = team.shared(Agreement)
     if number not in agreed.markers:
         agreed.markers.add(number)
@@ -78,9 +78,9 @@ def _agree_anew(team: TeamStore) -> None:
 
 
 def attacker(frame: Frame, team: TeamStore) -> int | None:
-    """Return the number of the robot that goes for the ball; None when nobody may.
+    """Return the number of the robot that goes for the ball, or None.
 
-    Beside robots that share out their tasks it is theirs that goes.
+    If the team also has robots that share out tasks (``team_player``), their attacker goes.
     """
     agreed = team.shared(Agreement)
     if agreed.frame is not frame and team.plan.frame is not frame:
@@ -126,7 +126,7 @@ def _choose_attacker(frame: Frame, team: TeamStore, farthest: dict[int, float]) 
 
 
 def _time_to_ball(frame: Frame, robot: RobotState) -> float:
-    """Estimate when the robot can be at the ball, wherever that will be, with the goal before it [s]."""
+    """Estimate when the robot can be behind the predicted ball, facing the goal [s]."""
     ball, game = frame.ball, frame.game
     x, y = ball.x, ball.y
     if not game.in_play and game.placement is not None and game.restart is not Restart.BALL_PLACEMENT:

@@ -1,4 +1,4 @@
-"""Decorator: plans ways as the team of November 2026 did."""
+"""Decorator: plans paths as the team of November 2026 did."""
 
 from __future__ import annotations
 
@@ -11,16 +11,16 @@ from robobt.tree.nodes.gate import Gate
 
 
 class GoRound(Gate, Bound[Store]):
-    """Lets its child's ways go round where moving robots will be, rather than evade them by velocity.
+    """Makes its child's paths lead round predicted positions of moving robots, without evading by velocity.
 
-    Has the child's status.
+    Returns the child's status.
     """
 
     def answer(self) -> None:
-        """Plan in the old way from now on, and tick the child."""
+        """Tick the child with the old planner."""
         evade(self.store.frame, False)
 
     def update(self) -> Status:
-        """Plan as ever for the robots that come next."""
+        """Restore the present planner for the next robots."""
         evade(self.store.frame, True)
         return super().update()

@@ -1,4 +1,4 @@
-"""Condition: this robot is the one that goes for the ball."""
+"""Condition: this robot goes for the ball."""
 
 from __future__ import annotations
 
@@ -11,12 +11,11 @@ from robobt.tree import Status
 class IsAttacker(Condition):
     """SUCCESS for the one robot of the team that goes for the ball or takes the restart.
 
-    Of the robots that ask it is the one with the shortest way to behind the ball;
-    another takes over when its way is clearly shorter. A kicker that may not
-    touch the ball again yet is passed over.
+    It is the robot with the shortest way to behind the ball, among those that tick this condition; another
+    takes over when its way is clearly shorter. A kicker that may not touch the ball again yet is skipped.
 
     Args:
-        farthest: largest x of the ball at which this robot goes for it [m]; None is any.
+        farthest: largest x of the ball at which this robot goes for it [m]; None for any x.
     """
 
     reads = ("team",)
@@ -25,7 +24,7 @@ class IsAttacker(Condition):
     farthest: float | None = None
 
     def on_running(self) -> Status:
-        """Enter this robot and see who it is."""
+        """Register this robot and check who the attacker is."""
         team, number = self.store.team, self.me.id
         enter_attacker(team, number, self.farthest)
         chosen = attacker(self.frame, team)

@@ -11,14 +11,14 @@ from robobt.tree import Status
 class MarkOpponent(Skill):
     """Stand beside an opponent in the own half, between it and the ball.
 
-    The robots of a team that mark share the opponents: those nearest to the own
-    goal first, each the nearest free marker, none the holder of the ball. FAILURE
-    while no opponent is left for this robot; otherwise it never ends by itself.
+    The marking robots of a team share the opponents: starting with the opponents nearest to the own goal,
+    each gets the nearest free marker; the holder of the ball is not marked. FAILURE while no opponent is left
+    for this robot; otherwise it never ends by itself.
 
     Source: RoboBulls' published code (MarkBot).
 
     Args:
-        gap: from centre to centre [m].
+        gap: distance between centres [m].
     """
 
     reads = ("team",)

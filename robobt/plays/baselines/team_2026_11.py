@@ -1,13 +1,12 @@
 """The team of November 2026: field players, defenders and a goalkeeper, by the rules.
 
-What a new team is measured against. Nothing here changes any more: where a skill that these
-trees use comes to decide otherwise, they get a copy of the old one. ``field_player`` and ``defender``
-are the same trees with what has been learned since: they evade moving robots by velocity and touch
-no ball in a defence area.
+New teams are measured against this one. It is frozen: when a skill that these trees use changes its
+decisions, they get a copy of the old skill. ``field_player`` and ``defender`` are the same trees with later
+improvements: they evade moving robots by velocity and do not touch the ball in a defence area.
 
-Every tree reads from the top: what the referee wants comes first, open play last. Nobody has a fixed
-part. Of the field players, and of the defenders near their own goal, the one with the shortest way goes
-for the ball; the others support it, or mark opponents while the ball is in their half.
+Every tree reads from the top: the referee's commands come first, open play last. No robot has a fixed part.
+Among the field players, and the defenders near their own goal, the robot with the shortest way goes for the
+ball; the others support it, or mark opponents while the ball is in their half.
 """
 
 from __future__ import annotations
@@ -53,7 +52,7 @@ from robobt.tree import Behaviour, Inverter, Selector, Sequence
 from robobt.world.game import Restart
 
 UPFIELD_SPEED = 2.0
-"""Of a kick that is neither shot nor pass: fast enough to get away, too slow to leave the field [m/s]."""
+"""Speed of a kick that is neither shot nor pass: it gets away but does not leave the field [m/s]."""
 
 
 @dataclass(frozen=True)
@@ -62,8 +61,8 @@ class _Player:
 
     Attributes:
         rater: the shot rater, by name or with settings.
-        min_score: worst shot taken, 0 to 1; what a score means is the rater's.
-        shot_distance: farthest from the goal [m].
+        min_score: worst shot taken, 0 to 1; its meaning depends on the rater.
+        shot_distance: largest distance of a shot from the goal [m].
         dribble_speed: top speed with the ball [m/s].
         farthest: largest x of the ball at which it goes for it [m]; None is any.
     """
@@ -98,7 +97,7 @@ class _Player:
         )
 
     def _restarts(self, penalty: Behaviour) -> tuple[Behaviour, ...]:
-        """Return what the referee wants of the robot that is nearest to the ball, and of all in a halt."""
+        """Return the branches for the referee's commands to the attacker, and to all robots in a halt."""
         take_it = Sequence("take it", memory=True, children=[MayTouchBall(), self._kick_away(settled=True)])
         get_ready = when("get ready", first_of("where to", *self._aims()), PrepareRestart())
         placing = IsRestart(kind=Restart.BALL_PLACEMENT, ours=True)
@@ -112,7 +111,7 @@ class _Player:
                 penalty,
             ),
             when("our placement", placing, self._attacks(), PlaceBall()),
-            # Where it goes is settled when it may be taken.
+            # The target is chosen when the restart may be taken.
             when(
                 "our restart", IsRestart(ours=True), self._attacks(), first_of("restart", take_it, get_ready)
             ),
@@ -122,7 +121,7 @@ class _Player:
         return IsAttacker(farthest=self.farthest)
 
     def _kick_away(self, *, settled: bool) -> Behaviour:
-        """Shoot, else pass, else kick the ball upfield; ``settled`` stays with what was begun."""
+        """Shoot, else pass, else kick the ball upfield; ``settled`` keeps the first choice."""
         shot, pass_, upfield = self._aims()
         return Selector(
             "kick away",
@@ -137,12 +136,12 @@ class _Player:
         )
 
     def _aims(self) -> tuple[Behaviour, Behaviour, Behaviour]:
-        """Return where the ball may be kicked, the best first: at the goal, to a team-mate, upfield."""
+        """Return the targets for a kick, the best first: the goal, a team-mate, upfield."""
         shot = SelectShot(rater=self.rater, min_score=self.min_score, max_distance=self.shot_distance)
         return shot, SelectPass(min_score=0.1), AimUpfield()
 
     def _on_the_ball(self) -> Behaviour:
-        """Attack, and let the ball go before it has been carried as far as the rules allow."""
+        """Attack, and release the ball before the dribbling limit."""
         return first_of(
             "attack",
             when("let go", CarriedFar(limit=0.8), Stop()),

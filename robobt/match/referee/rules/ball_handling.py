@@ -1,4 +1,4 @@
-"""What one robot does with the ball: dribbling, kicking too fast, touching it twice."""
+"""Offences of one robot with the ball: dribbling too far, kicking too fast, double touch."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _SPEED_TOLERANCE = 0.01
 
 
 class Dribbling(Rule):
-    """No robot takes the ball farther than ``most`` [m], as the crow flies, before it lets go of it."""
+    """No robot may carry the ball farther than ``most`` [m], in a straight line, before releasing it."""
 
     phases = frozenset({Phase.PLAY, Phase.PENALTY})
 
@@ -27,7 +27,7 @@ class Dribbling(Rule):
         self._told: RobotId | None = None
 
     def enter(self, scene: Scene) -> None:
-        """Count from where the ball comes into play."""
+        """Measure from where the ball comes into play."""
         scene.touches.carry_anew(scene.frame.ball.position)
         self._told = None
 
@@ -46,7 +46,7 @@ class Dribbling(Rule):
 
 
 class BallSpeed(Rule):
-    """No robot kicks the ball faster than ``most`` in space [m/s], a restart's kick among them."""
+    """No robot may kick the ball faster than ``most`` [m/s] in space; this includes restarts."""
 
     phases = frozenset({Phase.KICK, Phase.PLAY, Phase.PENALTY})
 
@@ -69,10 +69,10 @@ class BallSpeed(Rule):
 
 
 class DoubleTouch(Rule):
-    """Who takes a kick-off or free kick may not touch the ball again before another robot does.
+    """The kicker of a kick-off or free kick may not touch the ball again before another robot has.
 
-    From 0.05 m of the ball's way on; who pushes it that far is still touching it. Nobody is at fault
-    where a second robot has touched it on that way.
+    This applies once the ball has moved 0.05 m; until then a pushing robot still counts as touching it. There
+    is no offence if a second robot has touched the ball within that distance.
     """
 
     phases = frozenset({Phase.KICK, Phase.PLAY})
@@ -86,7 +86,7 @@ class DoubleTouch(Rule):
         self._touched: set[RobotId] = set()
 
     def enter(self, scene: Scene) -> None:
-        """Note where the ball lies, and then who has kicked it."""
+        """Note the ball's position and then the kicker."""
         self._kicker = None
         last = scene.touches.last
         if scene.phase is Phase.KICK:
@@ -105,7 +105,7 @@ class DoubleTouch(Rule):
         kicker, touches = self._kicker, scene.touches
         if scene.phase is Phase.KICK:
             self._touched.update(touches.now)
-            # Between two frames a taker may kick whom neither shows to touch the ball.
+            # A kicker may touch the ball between two frames without either showing it.
             self._touched.update(
                 robot
                 for robot, state in scene.frame.robots().items()

@@ -12,16 +12,16 @@ from robobt.world.geometry import Point
 from robobt.world.rules import exit_point, own_side, scorer
 
 _FROM_CENTRE = 0.2
-"""A kick from nearer to the half-way line is no aimless one. Source: AutoReferee [m]."""
+"""A kick from closer to the half-way line than this is not aimless [m]. Source: AutoReferee."""
 
 
 class BallLeft(Rule):
-    """Fully over a line between the posts, below the bar, is a possible goal, elsewhere the ball is out.
+    """A ball fully over the line between posts and bar is a possible goal; elsewhere it is out.
 
-    Out is out in a penalty kick, too: it has failed, whoever touched the ball last.
+    In a penalty kick the ball is also out, and the kick has failed whoever touched the ball last.
 
-    ``aimless`` says whether a kick from the own half over the far goal line, touched by nobody on its way,
-    is an event of its own: in division B.
+    ``aimless`` says whether a kick from the own half over the far goal line that no robot touches is its own
+    event, as in division B.
     """
 
     phases = frozenset({Phase.PLAY, Phase.PENALTY})
@@ -32,11 +32,11 @@ class BallLeft(Rule):
         self._told_at = 0.0
 
     def enter(self, _: Scene) -> None:
-        """Tell of a ball that was kicked straight out."""
+        """Reset, so that a ball kicked straight out is reported."""
         self._told = False
 
     def check(self, scene: Scene) -> Iterable[RefereeEvent]:
-        """Report the ball once, as soon as it is out; one that comes back from the wall is not out anew."""
+        """Report the ball once, as soon as it is out; a ball that bounces back is not reported again."""
         if not scene.out:
             self._told = self._told and scene.time - self._told_at < AGAIN
             return ()
@@ -77,7 +77,7 @@ class BallLeft(Rule):
             kicking_team=None if last is None else last.team,
             kicking_bot=None if last is None else last.number,
             kick_location=touches.where,
-            # In a penalty kick it may have been as high as it likes.
+            # In a penalty kick the ball's height is not limited.
             max_ball_height=None if scene.phase is Phase.PENALTY else touches.highest[team],
             num_robots_by_team=len(scene.team(team)),
             last_touch_by_team=touches.times.get(team),

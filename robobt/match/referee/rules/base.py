@@ -1,4 +1,4 @@
-"""What every rule is made of."""
+"""The base of every rule."""
 
 from __future__ import annotations
 
@@ -13,36 +13,36 @@ from robobt.world.geometry import Point
 from robobt.world.state import RobotId
 
 AGAIN = 2.0
-"""An offence that goes on, or is repeated, is reported again after this long. Source: AutoReferee [s]."""
+"""Time after which a continued or repeated offence is reported again [s]. Source: AutoReferee."""
 
 
 class Rule(ABC):
-    """Something that the referee looks out for; it keeps what it has to remember.
+    """A rule that the referee checks, with the state that it needs.
 
     Attributes:
-        phases: in which phases it looks.
+        phases: phases in which it is checked.
     """
 
     phases: ClassVar[frozenset[Phase]]
 
     def enter(self, _: Scene) -> None:
-        """Forget what does not outlast the change: one of its phases begins with this frame."""
+        """Reset its state, because one of its phases begins with this frame."""
         return
 
     @abstractmethod
     def check(self, scene: Scene) -> Iterable[RefereeEvent]:
-        """Look at the present frame, in one of its phases; return what happened."""
+        """Check the present frame, in one of its phases; return the events."""
 
 
 class Cooldown:
-    """Lets something through once, and again :data:`AGAIN` seconds later."""
+    """Lets a report through once, and again :data:`AGAIN` seconds later."""
 
     def __init__(self, pause: float = AGAIN) -> None:
         self._pause = pause
         self._last: dict[object, float] = {}
 
     def ready(self, key: object, time: float) -> bool:
-        """Return whether ``key`` has not been let through lately; it counts as let through now."""
+        """Return whether ``key`` may be reported now, and note that it was."""
         last = self._last.get(key)
         if last is not None and time - last < self._pause:
             return False
@@ -53,7 +53,7 @@ class Cooldown:
 def event(
     scene: Scene, kind: EventKind, robot: RobotId | None, at: Point | None = None, **details: Detail
 ) -> RefereeEvent:
-    """Return an event of a robot's team at a place, by default the ball's."""
+    """Return an event caused by a robot at a place, by default the ball's."""
     team = None if robot is None else robot.team
     return team_event(scene, kind, team, robot, at, **details)
 
@@ -66,6 +66,6 @@ def team_event(
     at: Point | None = None,
     **details: Detail,
 ) -> RefereeEvent:
-    """Return an event of a team, by a robot where that is known."""
+    """Return an event caused by a team and, if known, a robot."""
     x, y = scene.frame.ball.position if at is None else at
     return RefereeEvent(scene.time, kind, team, robot, x, y, details)

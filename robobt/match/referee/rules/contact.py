@@ -1,4 +1,4 @@
-"""Robots that run into each other, or shove one another about."""
+"""Crashes and pushing between robots."""
 
 from __future__ import annotations
 
@@ -19,32 +19,32 @@ _EQUAL_SPEEDS = 0.3
 """Both robots are at fault in a crash when their speeds differ by less than this. Source: SSL rules [m/s]."""
 
 _TOUCHING = 1.1 * 2.0 * ROBOT_RADIUS
-"""Robots whose centres are no farther apart touch. Source: AutoReferee [m]."""
+"""Robots whose centres are no farther apart than this touch [m]. Source: AutoReferee."""
 
 _BRAKED = 3.0 * 0.1
-"""Each robot's speed counts as that much less: it may have begun to brake unseen.
+"""Speed subtracted for each robot, because it may have begun to brake unseen.
 
 Source: AutoReferee, for 0.1 s; 3 m/s² as the league's robots accelerate [m/s].
 """
 
 _PUSHING, _PUSHED = 0.19, 0.2
-"""Robots whose centres are nearer than the first touch; a way beyond the second is a push. Source:
-AutoReferee [m]."""
+"""Distance between centres below which robots touch, and pushed distance above which it is a push [m].
+Source: AutoReferee."""
 
 _PUSH_ANGLE = 0.7
-"""Most between the pusher's direction to the pushed robot and that one's way. Source: AutoReferee [rad]."""
+"""Largest angle between the direction to the pushed robot and its movement [rad]. Source: AutoReferee."""
 
 _FOLLOWS = 0.05
-"""A pusher moves at least this fast towards the pushed robot, which does not do so [m/s]."""
+"""Least speed of a pusher towards the pushed robot, which does not move towards the pusher [m/s]."""
 
 _place = attrgetter("x")
 
 Pair = tuple[int, int]
-"""Numbers of a blue and a yellow robot."""
+"""A pair of numbers: a blue and a yellow robot."""
 
 
 def close_pairs(frame: Frame, reach: float) -> Iterator[tuple[RobotState, RobotState]]:
-    """Find each blue and yellow robot whose centres are no farther apart than ``reach`` [m]."""
+    """Find the pairs of a blue and a yellow robot with centres at most ``reach`` [m] apart."""
     yellows = sorted(frame.opponents, key=_place)
     places = [robot.x for robot in yellows]
     for blue in frame.own:
@@ -58,11 +58,10 @@ def close_pairs(frame: Frame, reach: float) -> Iterator[tuple[RobotState, RobotS
 
 
 class Crash(Rule):
-    """Two robots meet at more than ``limit`` along the line of their centres [m/s].
+    """Two robots may not collide at more than ``limit`` [m/s] along the line of their centres.
 
-    The faster one is at fault, both where their speeds hardly differ. Speeds are those of the frame before
-    where they were greater: in the frame in which robots are seen to touch they may have stopped each
-    other already.
+    The faster robot is at fault, or both if their speeds hardly differ. The greater of the speeds in this and
+    the last frame counts, because in the frame of contact the robots may already have stopped each other.
     """
 
     phases = frozenset(Phase) - {Phase.HALT}
@@ -120,9 +119,9 @@ def _crash(scene: Scene, blue: RobotState, yellow: RobotState, speed: float) -> 
 
 
 class Pushing(Rule):
-    """A robot shoves an opponent, which travels with it for 0.2 m, or into its own defence area.
+    """A robot may not push an opponent over 0.2 m, or into the opponent's own defence area.
 
-    Where both push there is no offence.
+    If both push there is no offence.
     """
 
     phases = frozenset({Phase.PLAY, Phase.PENALTY})
@@ -131,11 +130,11 @@ class Pushing(Rule):
         self._began: dict[Pair, tuple[Point, Point]] = {}
 
     def enter(self, _: Scene) -> None:
-        """Forget contacts of before."""
+        """Forget earlier contacts."""
         self._began.clear()
 
     def check(self, scene: Scene) -> Iterable[RefereeEvent]:
-        """Report a push and count it anew."""
+        """Report a push and reset its count."""
         began: dict[Pair, tuple[Point, Point]] = {}
         for blue, yellow in close_pairs(scene.frame, _PUSHING):
             pair = blue.id, yellow.id
@@ -163,7 +162,7 @@ class Pushing(Rule):
 
 
 def _pushes(pusher: RobotState, pushed: RobotState, start: Point, way: float) -> bool:
-    """Return whether one robot drives at the other, which gives way in that direction."""
+    """Return whether one robot drives at the other, which moves away in that direction."""
     dx, dy = pushed.x - pusher.x, pushed.y - pusher.y
     gap = hypot(dx, dy)
     if gap == 0.0 or way == 0.0:

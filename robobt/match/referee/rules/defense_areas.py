@@ -1,4 +1,4 @@
-"""The defence areas in play: only their goalkeeper touches the ball there, and not for long."""
+"""The defence areas in play: only the goalkeeper may touch the ball there, for a limited time."""
 
 from __future__ import annotations
 
@@ -12,16 +12,16 @@ from robobt.world.rules import area_distance, in_defense_area
 from robobt.world.state import ROBOT_RADIUS
 
 _INSIDE = ROBOT_RADIUS - 0.02
-"""An attacker is partly inside when its centre is this near to the area. Source: AutoReferee [m]."""
+"""An attacker whose centre is this close to the area is partly inside [m]. Source: AutoReferee."""
 
 _SETTLED = 0.5
-"""Play has to have lasted so long. Source: AutoReferee [s]."""
+"""Time in play before this is checked [s]. Source: AutoReferee."""
 
 
 class DefenseAreaTouch(Rule):
-    """An attacker touches the ball while partly in the area, or a defender while wholly in its own.
+    """No attacker may touch the ball while partly in the area, and no defender while fully in its own.
 
-    Not while both teams touch the ball, nor where an opponent touches, and so may push, the defender.
+    Not checked while both teams touch the ball, or while an opponent touches, and may push, the defender.
     """
 
     phases = frozenset({Phase.PLAY, Phase.PENALTY})
@@ -59,7 +59,7 @@ class DefenseAreaTouch(Rule):
 
 
 class KeeperHeld(Rule):
-    """The ball stays in a defence area for no longer than ``limit`` [s]."""
+    """The ball may stay in a defence area no longer than ``limit`` [s]."""
 
     phases = frozenset({Phase.PLAY})
 
@@ -73,7 +73,7 @@ class KeeperHeld(Rule):
         self._team = None
 
     def check(self, scene: Scene) -> Iterable[RefereeEvent]:
-        """Report it, and again after as long."""
+        """Report it, and again after the same time."""
         x, y = scene.frame.ball.position
         defender = Team.BLUE if x < 0.0 else Team.YELLOW
         if not in_defense_area(scene.field, defender, x, y):

@@ -1,4 +1,4 @@
-"""A penalty kick that has come to nothing."""
+"""Failed penalty kicks."""
 
 from __future__ import annotations
 
@@ -15,13 +15,14 @@ _REST = 0.01
 """A ball slower than this has stopped [m/s]."""
 
 _TURN_TIME = 0.2
-"""The ball's direction is compared with that of so long ago. Source: AutoReferee [s]."""
+"""The ball's direction is compared with its direction this long ago [s]. Source: AutoReferee."""
 
 
 class PenaltyKick(Rule):
-    """The defending team stops the ball or turns it by 90 degrees or more, or the kicker takes it back.
+    """A penalty kick fails if defenders stop the ball or turn it by 90 degrees, or the kicker takes it back.
 
-    That it leaves the field elsewhere is reported as such; the controller ends the kick after its time.
+    A ball that leaves the field is reported by another rule; the controller ends the kick when its time is
+    over.
     """
 
     phases = frozenset({Phase.PENALTY})

@@ -1,4 +1,4 @@
-"""Placement of the ball by a team's robots."""
+"""Ball placement by a team's robots."""
 
 from __future__ import annotations
 
@@ -13,28 +13,31 @@ from robobt.world.rules import PLACED_DISTANCE, STOP_DISTANCE
 from robobt.world.state import ROBOT_RADIUS, RobotId
 
 _SOONEST = 2.0
-"""No placement succeeds before that. Source: SSL rules [s]."""
+"""Least duration of a placement [s]. Source: SSL rules."""
 
 _OWN_GAP = 0.05
-"""Robots are at least this far from the ball when their free kick follows. Source: SSL rules [m]."""
+"""Least distance of robots from the ball when their free kick follows [m]. Source: SSL rules."""
 
 _SMOOTHING, _STILL = 0.97, 0.005
-"""A ball lies still that is so near to its moving average of so much a frame. Source: AutoReferee [m]."""
+"""Weight of the past in the ball's moving average, and largest distance of a resting ball from it [m].
+
+Source: AutoReferee.
+"""
 
 _LEARNT_AT = 0.01
-"""Frames of this length are those of the moving average [s]."""
+"""Frame length of the moving average [s]."""
 
 _KEEP_OFF = STOP_DISTANCE + ROBOT_RADIUS
-"""Opponents' centres are at least this far from the way of the ball. Source: SSL rules [m]."""
+"""Least distance of opponents' centres from the ball's way [m]. Source: SSL rules."""
 
 _INTERFERING = 2.0
-"""Opponents have this long to leave the way of the ball. Source: SSL rules [s]."""
+"""Time for opponents to leave the ball's way [s]. Source: SSL rules."""
 
 
 class PlacementSucceeded(Rule):
-    """The ball lies still within 0.15 m of its spot, and robots have let go of it.
+    """A placement succeeds with the ball at rest within 0.15 m of its spot and robots clear of it.
 
-    They are 0.05 m away from it where the placing team's free kick follows, else 0.5 m.
+    Clear means 0.05 m if the placing team's free kick follows, else 0.5 m.
     """
 
     phases = frozenset({Phase.PLACEMENT})
@@ -80,7 +83,7 @@ class PlacementSucceeded(Rule):
 
 
 class PlacementInterference(Rule):
-    """Opponents of the placing team stay 0.5 m off the way from the ball to its spot."""
+    """Opponents of the placing team must stay 0.5 m away from the line from the ball to its spot."""
 
     phases = frozenset({Phase.PLACEMENT})
 
@@ -92,12 +95,12 @@ class PlacementInterference(Rule):
         self._since.clear()
 
     def check(self, scene: Scene) -> Iterable[RefereeEvent]:
-        """Report a robot once as long as it stays."""
+        """Report a robot once while it stays."""
         placing, spot, ball = scene.game.restart_team, scene.game.placement, scene.frame.ball.position
         if placing is None or spot is None:
             return
         other = placing.other
-        # Most robots are clear of the rectangle around ball and spot, which is quicker to see.
+        # Most robots are outside the rectangle around ball and spot, which is quicker to check.
         low_x, high_x = min(ball[0], spot[0]) - _KEEP_OFF, max(ball[0], spot[0]) + _KEEP_OFF
         low_y, high_y = min(ball[1], spot[1]) - _KEEP_OFF, max(ball[1], spot[1]) + _KEEP_OFF
         for robot in scene.team(other):

@@ -1,4 +1,4 @@
-"""Play that gets nowhere, and teams that are too many."""
+"""Lack of progress, and too many robots."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ from robobt.world.game import Team
 from robobt.world.geometry import Point, distance
 
 _RUNNING = 2.0
-"""Play has to have lasted this long before robots are counted. Source: game controller [s]."""
+"""Time in play before robots are counted [s]. Source: game controller."""
 
 _TIME_TO_LEAVE = 10.0
-"""A robot has this much playing time to leave after a card. Source: SSL rules [s]."""
+"""Playing time for a robot to leave after a card [s]. Source: SSL rules."""
 
 
 class NoProgress(Rule):
-    """The ball has not moved by ``way`` [m] for ``limit`` [s]."""
+    """The ball must move by ``way`` [m] within ``limit`` [s]."""
 
     phases = frozenset({Phase.PLAY})
 
@@ -29,11 +29,11 @@ class NoProgress(Rule):
         self._since = 0.0
 
     def enter(self, scene: Scene) -> None:
-        """Count from where the ball comes into play."""
+        """Measure from where the ball comes into play."""
         self._place, self._since = scene.frame.ball.position, scene.time
 
     def check(self, scene: Scene) -> Iterable[RefereeEvent]:
-        """Report it, and again after as long."""
+        """Report it, and again after the same time."""
         ball, time = scene.frame.ball.position, scene.time
         if distance(ball, self._place) > self._way:
             self._place, self._since = ball, time
@@ -44,7 +44,7 @@ class NoProgress(Rule):
 
 
 class TooManyRobots(Rule):
-    """A team has more robots on the field than it may, ten seconds of play after its last card."""
+    """A team may not have too many robots on the field ten seconds of play after its last card."""
 
     phases = frozenset({Phase.KICK, Phase.PLAY})
 

@@ -1,4 +1,4 @@
-"""Where robots may be and how fast they may drive while play is stopped or restarts."""
+"""Distances and speeds of robots while play is stopped or restarts."""
 
 from __future__ import annotations
 
@@ -16,16 +16,16 @@ _AREA_TOLERANCE = 0.015
 """Source: AutoReferee [m]."""
 
 POINT_TOLERANCE = 0.02
-"""How much nearer to the ball than they have to keep nobody minds. Source: AutoReferee [m]."""
+"""Tolerance of the distance that robots keep from the ball [m]. Source: AutoReferee."""
 
 _TOO_FAST_FOR = 0.3
-"""A robot is too fast once it has been for this long. Source: AutoReferee [s]."""
+"""Time for which a robot must be too fast to be reported [s]. Source: AutoReferee."""
 
 
 class AreaDistance(Rule):
-    """Robots keep 0.2 m from the opponents' defence area in STOP and at free kicks.
+    """Robots must keep 0.2 m from the opponents' defence area in STOP and at free kicks.
 
-    From ``grace`` after play was stopped on [s]; not where an opponent touches them.
+    Checked from ``grace`` [s] after play was stopped; not while an opponent touches the robot.
     """
 
     phases = frozenset({Phase.STOP, Phase.KICK})
@@ -59,9 +59,9 @@ class AreaDistance(Rule):
 
 
 class KickPointDistance(Rule):
-    """Opponents keep ``least`` from the ball while a kick-off or free kick is taken [m].
+    """Opponents must keep ``least`` [m] from the ball while a kick-off or free kick is taken.
 
-    From ``grace`` after play was stopped on [s].
+    Checked from ``grace`` [s] after play was stopped.
     """
 
     phases = frozenset({Phase.KICK})
@@ -92,7 +92,7 @@ class KickPointDistance(Rule):
 
 
 class StopSpeed(Rule):
-    """Robots are no faster than ``most`` in STOP [m/s], from ``grace`` after it began on [s]."""
+    """Robots may not be faster than ``most`` [m/s] in STOP, checked from ``grace`` [s] after it began."""
 
     phases = frozenset({Phase.STOP})
 
