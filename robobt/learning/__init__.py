@@ -1,8 +1,8 @@
 """Learning: tasks, the arenas they are trained in, agents, training, export.
 
-Importing it makes the tasks known to Gymnasium: ``GoToBall-v0``, ``Duel-v0`` and so on, also as
+Importing it registers the tasks with Gymnasium: ``GoToBall-v0``, ``Duel-v0`` and so on, also as
 ``robobt/GoToBall-v0``, for ``gymnasium.make`` and, with ``vectorization_mode="vector_entry_point"``, for
-``gymnasium.make_vec``. :data:`TASKS` has them by name and takes tasks of one's own.
+``gymnasium.make_vec``. :data:`TASKS` has them by name; register your own tasks there.
 """
 
 from typing import TYPE_CHECKING

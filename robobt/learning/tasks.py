@@ -1,4 +1,4 @@
-"""The tasks by name: those that ship, and those that packages and files of others register."""
+"""The tasks by name: shipped ones, and those that other packages and files register."""
 
 from __future__ import annotations
 
@@ -32,14 +32,14 @@ _SHIPPED = {
     "attack3v2": "soccer.suite:Attack3v2",
     "small3v3": "soccer.suite:Small3v3",
 }
-"""Where the tasks that ship are; each is imported when it is first asked for."""
+"""Modules of the shipped tasks; each is imported at first use."""
 
 _IDS = {"shoot": "ShootTowardsGoal"}
 """Tasks that Gymnasium knows by another name."""
 
 
 def environment_id(name: str) -> str:
-    """Return what Gymnasium calls a task, without a version: ``GoToBall`` for ``go_to_ball``."""
+    """Return a task's Gymnasium id without version: ``GoToBall`` for ``go_to_ball``."""
     return _IDS.get(name) or "".join([part[:1].upper() + part[1:] for part in name.split("_")])
 
 
@@ -57,9 +57,9 @@ class Tasks(Registry[type[Any]]):
             _tell_gymnasium(name)
 
     def register(self, name: str = "") -> Callable[[_C], _C]:
-        """Return a decorator that enters a task under ``name`` and makes it known to Gymnasium.
+        """Return a decorator that registers a task under ``name``, and with Gymnasium.
 
-        A class of a file that is run again, as an imported module say, takes the place of the first one.
+        If a file runs again, for example as an imported module, its class replaces the first one.
 
         Raises:
             TypeError: there is no name.

@@ -29,18 +29,18 @@ from robobt.learning.agents.replay import Batch, Bootstrap
 from robobt.learning.agents.settings import AgentSettings
 
 _NORM_EVERY = 16
-"""Of so many updates one has its gradients' norms logged: they cost as much as a layer does."""
+"""Gradient norms are logged once per this many updates, because they cost as much as a layer."""
 
 
 class DDPG(Learner):
     """Actor, critic, their target networks and their optimisers.
 
     Args:
-        settings: of the learner.
+        settings: settings of the learner.
         scale: (observation,) typical size of each entry of the observation.
         smoothed: (action,) entries to which target policy smoothing adds noise: all but thresholds, such as
             that of a kick.
-        seed: of the initial weights.
+        seed: seed of the initial weights.
     """
 
     def __init__(

@@ -38,7 +38,7 @@ class Diagnostics:
         self._counts.clear()
 
     def state(self) -> dict[str, NDArray[np.generic]]:
-        """Return what a resumed run goes on from, as arrays by name."""
+        """Return the state for a resumed run, as arrays by name."""
         counts = {f"{name}{_COUNT}": np.array(count) for name, count in self._counts.items()}
         return {**{name: total.numpy().copy() for name, total in self._sums.items()}, **counts}
 

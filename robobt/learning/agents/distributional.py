@@ -12,7 +12,7 @@ from torch import Tensor
 
 
 class Atoms:
-    """At least 2 evenly spaced returns from ``low`` to ``high``; what lies beyond counts as these."""
+    """At least 2 evenly spaced returns from ``low`` to ``high``; returns beyond are clipped to them."""
 
     def __init__(self, low: float, high: float, count: int) -> None:
         if count < 2 or not low < high:

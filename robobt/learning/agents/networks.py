@@ -56,10 +56,10 @@ class Actor(nn.Module):
     ``scale`` (observation,) is the typical size of each entry in its SI unit, ``hidden`` the sizes of the
     hidden layers; ``layer_norm``, ``generator`` and ``activation`` are as for :func:`mlp`.
 
-    ``vectors`` are the entries at which vectors in the robot's frame begin, x and then y. If there are any,
-    the network gets all of them, and returns the velocity at the beginning of the action, in the frame in
-    which the first vector points ahead: it does the same in every heading. The velocity is then clipped to
-    length 1 in any direction.
+    ``vectors`` are the entries at which vectors (x, y) in the robot's frame begin. If there are any, the
+    network works in the frame in which the first vector points ahead: its inputs are turned into that frame,
+    and the velocity at the beginning of its action is turned back, so it acts the same in every heading. The
+    velocity is then clipped to length 1 in any direction.
 
     Attributes:
         build: the arguments that make an actor of the same shape.

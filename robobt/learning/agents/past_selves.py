@@ -1,4 +1,4 @@
-"""Frozen copies of a policy, against which it plays so that it does not forget how to beat them."""
+"""Frozen copies of a policy as opponents, so that it does not forget how to beat them."""
 
 from __future__ import annotations
 

@@ -47,7 +47,7 @@ class Rollout:
     """Steps of ``n`` arenas, T of each.
 
     Attributes:
-        observation: (T, n, O) the policy's observation, followed by what only the value gets.
+        observation: (T, n, O) the policy's observation, followed by the additional inputs of the value.
         action: (T, n, A) as sampled.
         log_probability: (T, n) of the action.
         value: (T, n) V of the observation.
@@ -105,7 +105,7 @@ class PPO(Learner):
         scale: (observation,) typical size of each entry of the observation.
         continuous: (action,) which entries are normal; the others are thresholds at 0.
         seed: of the initial weights.
-        state_scale: (state,) typical sizes of the entries after the observation, which only the value gets.
+        state_scale: (state,) typical sizes of the value's additional inputs.
         vectors: entries of the observation that are turned into the ball's frame; see :class:`Actor`.
     """
 

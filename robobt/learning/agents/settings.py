@@ -96,13 +96,13 @@ class PPOSettings(Settings):
     )
     critic: Literal["own", "central"] = Field(
         "own",
-        description="input of the value: own: the robot's observation; central: besides, the true state of "
-        "all robots from its team's side; for tasks of several robots",
+        description="input of the value: own: the robot's observation; central: also the true state of all "
+        "robots from its team's side; for tasks with several robots",
     )
     frame: Literal["robot", "ball"] = Field(
         "robot",
-        description="frame of the observed vectors and of the velocity action: robot: the robot's; ball: the "
-        "one in which the ball lies ahead, so that what is learned in one heading is learned in all; for "
+        description="frame of the observed vectors and of the velocity action: robot: the robot's; ball: "
+        "the frame in which the ball is ahead, so that the policy is the same in all headings; for "
         "go_to_ball_among_robots",
     )
     gamma: float = Field(0.985, gt=0, lt=1, description="discount per decision, at first")
@@ -121,7 +121,7 @@ class PPOSettings(Settings):
     max_grad_norm: float = Field(0.5, gt=0, le=100, description="gradients are clipped to this norm")
     init_std: float = Field(0.6, gt=0, le=3, description="initial standard deviation of actions")
     critic_warmup_steps: int = Field(
-        0, ge=0, description="steps in which only the value is trained, such as that of a policy from init"
+        0, ge=0, description="steps in which only the value is trained, for a policy from init"
     )
     threshold_bias: float = Field(-2.5, ge=-10, le=10, description="initial log-odds of kicks")
 

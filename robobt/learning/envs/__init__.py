@@ -1,6 +1,6 @@
-"""The tasks that skills are trained on, and what a task of one's own is made of.
+"""The tasks that skills are trained on, and the parts for tasks of your own.
 
-A learner steps many arenas at once (:class:`ArenaTask`); Gymnasium's interface is over the same.
+A learner steps many arenas at once (:class:`ArenaTask`); Gymnasium's interface wraps the same tasks.
 """
 
 from robobt.learning.envs.arena_task import ArenaTask as ArenaTask

@@ -1,4 +1,4 @@
-"""What the environments have in common: arenas that are stepped, observed and started anew."""
+"""The base of the tasks: arenas that are stepped, observed and reset."""
 
 from __future__ import annotations
 
@@ -41,30 +41,30 @@ _TASKS: dict[type[TaskSettings], type[ArenaTask]] = {}
 class ArenaTask:
     """``n`` arenas with a ball and a learner's robot; see :class:`~robobt.learning.envs.task.VectorTask`.
 
-    A task is a subclass with five parts, each of which a subclass of that can replace alone: what is observed
-    (:attr:`observation`), where episodes start (:meth:`sample`), what is rewarded (:meth:`reward`), how they
-    end (:meth:`ends`), and what the robots do that do not learn (:meth:`oppose`).
+    A task is a subclass with five parts, and a further subclass can replace each part alone: the observation
+    (:attr:`observation`), the starts of episodes (:meth:`sample`), the reward (:meth:`reward`), the ends of
+    episodes (:meth:`ends`), and the robots that do not learn (:meth:`oppose`).
 
-    Where a task has several learners their observations, and their actions, stand one after the other.
+    With several learners their observations, and their actions, are concatenated.
 
-    ``settings`` are the task's. ``seed`` is that of everything drawn from the first ``reset`` on; None
-    for another each time. Each arena draws with generators of its own: what happens in it follows from
-    the seed and its index, bit for bit, however many arenas there are beside it.
+    ``settings`` are the task's settings. ``seed`` is the seed of all random draws from the first ``reset``
+    on; None for a new one each time. Each arena has its own generators: its episodes depend only on the seed
+    and its index, bit for bit, whatever the number of arenas.
 
     Attributes:
-        name: under which it is registered.
-        Settings: of the task; a class of its own for each task, which a subclass that says none is given.
-        played_by: the skill that a model of it is for.
-        timed: which of an episode's times says how fast a success was.
-        central: whether a central critic can learn it.
-        terms: the record of the reward's terms, one number each.
+        name: name under which it is registered. Settings: class of the task's settings, one for each task; a
+            subclass without one gets its own.
+        played_by: the skill that uses a model of this task.
+        timed: the time of an episode that measures how fast a success was.
+        central: whether a central critic can be used.
+        terms: record type of the reward's terms, one number each.
         arenas: the simulator, from the first ``reset`` on.
-        observation: what is observed.
-        robots: in an arena; a start's first columns are the state of each.
-        blue: how many of them, the first, are the learner's team.
+        observation: specification of the observation.
+        robots: number of robots in an arena; a start's first columns are their states.
+        blue: number of robots in the learner's team, which come first.
         learners: indices of the robots that learn.
-        start_columns: what a start consists of: each robot, the ball, and whatever else a task starts from.
-        ended: the episodes that the last step ended; None without any.
+        start_columns: columns of a start: each robot, the ball, and the task's further columns.
+        ended: the episodes that ended in the last step, or None.
     """
 
     name: ClassVar[str] = ""
@@ -134,9 +134,9 @@ class ArenaTask:
         self._own_ends = type(self).ends is not judged_by.__dict__.get("ends", ArenaTask.ends)
 
     def sample(self, rng: np.random.Generator, count: int) -> FloatArray:
-        """Sample ``count`` starts (count, S), columns :attr:`start_columns`; ``rng`` decides.
+        """Sample ``count`` starts (count, S), columns :attr:`start_columns`, from ``rng``; return them.
 
-        :func:`~robobt.learning.envs.starts.start_parts` has their numbers by name.
+        :func:`~robobt.learning.envs.starts.start_parts` gives access to their columns by name.
         """
         raise NotImplementedError(f"{type(self).__name__}: has no starts")
 
@@ -155,45 +155,45 @@ class ArenaTask:
         return made
 
     def reward(self, tick: Tick) -> Mapping[str, FloatArray]:
-        """Return the terms of a tick's reward by their names, (n,) each; their sum is the reward."""
+        """Return the terms of a tick's reward by name, (n,) each; their sum is the reward."""
         return tick.terms
 
     def ends(self, tick: Tick) -> tuple[BoolArray, BoolArray]:
-        """Return which episodes a tick ends in success and which otherwise, (n,) each.
+        """Return which episodes end in this tick with success, and which without, (n,) each.
 
-        Time is up by itself, see ``time_limit``.
+        The time limit applies automatically, see ``time_limit``.
         """
         return tick.success, tick.failed
 
     def oppose(self, commands: FloatArray) -> None:
-        """Fill the ``commands`` (n, R, 7) of the robots that do not learn, for one tick.
+        """Fill in the ``commands`` (n, R, 7) of the robots that do not learn, for one tick.
 
-        ``commands.view(COMMAND)[..., 0]`` has their numbers by name
-        (:class:`robobt.sim.records.Command`), :attr:`now` those of robots and balls.
+        ``commands.view(COMMAND)[..., 0]`` gives their fields by name (:class:`robobt.sim.records.Command`),
+        :attr:`now` the robots and balls.
         """
 
     def begin(self, starts: FloatArray, which: IntArray) -> None:
-        """Take from the ``starts`` (m, S) of the arenas ``which`` what there is besides robots and ball."""
+        """Read the columns after robots and ball from the ``starts`` (m, S) of the arenas ``which``."""
 
     def _judge(self, actions: FloatArray, rewards: FloatArray, ends: Ends) -> bool:  # noqa: ARG002
-        """Add a tick to ``rewards`` (n,) and ``ends``; return whether any episode has ended.
+        """Add a tick's reward to ``rewards`` (n,) and fill ``ends``; return whether any episode has ended.
 
-        An episode that had ended already is left as it is. Tasks whose reward and ends are compiled override
-        it; here nothing but time ends an episode.
+        Episodes that have already ended stay unchanged. Tasks with compiled rewards and ends override this;
+        here only the time limit ends an episode.
         """
         fired: BoolArray = np.any(self.arenas.kicked[:, self.learners], axis=1)
         return count(self.settings.time_limit, fired, self._ledger(rewards, ends))
 
     def _optimum(self, starts: FloatArray, which: IntArray) -> FloatArray:  # noqa: ARG002
-        """Return the shortest possible times from the starts [s]; nan where nobody knows one."""
+        """Return the shortest possible times from the starts [s]; nan where unknown."""
         return np.full(len(which), np.nan)
 
     def _announce(self, seen: FloatArray, which: IntArray) -> None:
-        """Fill what the arenas ``which`` are told besides what is seen of them, in observations (m, O)."""
+        """Fill entries of observations (m, O) of the arenas ``which`` beyond robots and ball."""
 
     @property
     def ranges(self) -> dict[str, float]:
-        """What the quantities that entries of the observation name as their ranges are at most.
+        """Largest values of the quantities that entries of the observation name as their range.
 
         They follow from walls, limits, kicker and noise.
         """
@@ -211,30 +211,30 @@ class ArenaTask:
 
     @property
     def central_scale(self) -> tuple[float, ...]:
-        """Typical size of what a central critic sees besides; empty where there is none."""
+        """Typical size of each additional entry for a central critic; empty without one."""
         return ()
 
     def central_view(self) -> FloatArray:
-        """Return what a central critic sees of each learner's arena besides, (n, L, entries)."""
+        """Return the additional input of a central critic for each learner, (n, L, entries)."""
         return np.zeros((self.n, len(self.learners), 0))
 
     @property
     def state_size(self) -> int:
-        """Length of an arena's :meth:`state`."""
+        """Number of entries of an arena's :meth:`state`."""
         return size(TURNED) * self.robots + size(BALL)
 
     def state(self) -> FloatArray:
-        """Return the arenas' true states, (n, 7 R + 4), for whatever learns from them.
+        """Return the arenas' true states, (n, 7 R + 4), for learning from them.
 
-        For each robot x, y, the heading's cosine and sine, vx, vy, omega, then the ball's x, y, vx, vy, in
-        field coordinates.
+        For each robot they have x, y, the heading's cosine and sine, vx, vy, omega, then the ball's x, y, vx,
+        vy, in field coordinates.
         """
         robots = states_of(self.arenas.robots).reshape(self.n, -1)
         return np.concatenate((robots, self.arenas.balls), axis=1)
 
     @property
     def shares(self) -> FloatArray:
-        """What each learner earned in the last decision, (n, L); their mean is the arena's reward."""
+        """Each learner's reward in the last decision, (n, L); their mean is the arena's reward."""
         return np.repeat(self._rewards[:, None], len(self.learners), axis=1)
 
     @property
@@ -243,22 +243,22 @@ class ArenaTask:
         return None
 
     def script(self) -> Policy | None:
-        """Return a policy written by hand over the observations that does the task; None: there is none."""
+        """Return a hand-written policy on the observations for the task, or None."""
         return None
 
     def skill(self) -> Skill | None:
-        """Return a skill that does the task, for demonstrations; None: there is none."""
+        """Return a skill for the task, for demonstrations, or None."""
         return None
 
     @property
     def _robot_limits(self) -> list[RobotLimits | None]:
-        """What each robot can do; None for the simulator's own."""
+        """The limits of each robot; None for the simulator's own."""
         own = self.settings.robot_limits
         return [own if index in self.learners else None for index in range(self.robots)]
 
     @property
     def _progress(self) -> NDArray[np.void]:
-        # Not kept: in a copy, or unpickled, it would be an array of its own.
+        # Not cached: a copied or unpickled task would have a separate array.
         progress: NDArray[np.void] = self._progress_rows.view(PROGRESS)[:, 0]
         return progress
 
@@ -272,7 +272,7 @@ class ArenaTask:
         return self._judged_terms if self._own_terms is None else self._own_terms
 
     def _ledger(self, rewards: FloatArray, ends: Ends) -> Ledger:
-        """Return what a compiled judge takes as a plain tuple."""
+        """Return the arguments of a compiled judge as a plain tuple."""
         return cast(Ledger, (self._progress_rows, self._term_rows, rewards, *ends))
 
     @property
@@ -282,12 +282,12 @@ class ArenaTask:
 
     @property
     def ticks(self) -> FloatArray:
-        """How long each arena's episode has gone on, (n,)."""
+        """Ticks since the start of each arena's episode, (n,)."""
         ticks: FloatArray = self._progress["ticks"]
         return ticks
 
     def jointly(self, policy: Policy) -> Policy:
-        """Return ``policy``, which decides for each learner alone, as one for all of an arena."""
+        """Return a policy for whole arenas that applies ``policy`` to each learner."""
         each = len(self.learners)
         if each == 1:
             return policy
@@ -299,7 +299,7 @@ class ArenaTask:
         return decide
 
     def sample_starts(self, seed: int, count: int) -> FloatArray:
-        """Sample ``count`` starts (count, S) from a seed of their own; the task's state stays as it is."""
+        """Return ``count`` starts (count, S) from a separate ``seed``, leaving the task's state unchanged."""
         return checked_starts(self, len(self.start_columns), np.random.default_rng(seed), count)
 
     def reset(self, seed: int | None = None) -> FloatArray:
@@ -312,12 +312,12 @@ class ArenaTask:
     def reset_to(self, starts: ArrayLike, seed: int | None = None) -> FloatArray:
         """Start from given starts in a new simulator and return the (n, O) observations.
 
-        Arenas that get none, or end later, go on as ever.
+        Arenas without a given start, and later episodes, draw their starts as usual.
 
         Args:
-            starts: (m, S), columns :attr:`start_columns`, handed out in order, first
-                to the arenas and then to those whose episode ends.
-            seed: of noise, randomisation and of starts drawn afterwards.
+            starts: (m, S), columns :attr:`start_columns`, used in order, first by the arenas and then by
+                those whose episode ends.
+            seed: seed of noise, randomisation and starts drawn later.
 
         Raises:
             ValueError: wrong shape, a number that is not finite, or a place outside the walls.
@@ -331,7 +331,7 @@ class ArenaTask:
         return self._begin(self._all)
 
     def restart(self) -> FloatArray:
-        """Start all arenas anew in the simulator there is, faster than :meth:`reset`; return (n, O)."""
+        """Restart all arenas in the existing simulator, faster than :meth:`reset`; return (n, O)."""
         self.ended = None
         return self._begin(self._all)
 
@@ -346,13 +346,13 @@ class ArenaTask:
         return result
 
     def renew(self, result: StepResult) -> None:
-        """Start anew what ended in :meth:`advance`; the first observations go into ``result``."""
+        """Restart the episodes that ended in :meth:`advance`; their first observations go into ``result``."""
         if self.ended is not None:
             which = np.flatnonzero(result.terminated | result.truncated)
             result.observation[which] = self._begin(which)
 
     def advance(self, actions: FloatArray) -> StepResult:
-        """Do and return as :meth:`step`, but leave an episode that has ended: a reset starts it anew.
+        """Step and return as :meth:`step`, but do not restart ended episodes; a reset does.
 
         ``actions`` (n, A) are in [-1, 1].
         """
@@ -388,7 +388,7 @@ class ArenaTask:
         return StepResult(final.copy(), rewards, ends.terminated, ends.truncated, final, ends.success)
 
     def _carried(self) -> FloatArray:
-        """Return the commands, with the ball slowed down sideways as skills do, for the dribbler's sake."""
+        """Return the commands, with sideways speed limited for the dribbler as in skills."""
         limits = self.settings.robot_limits
         if limits.carry_aside is None:
             return self._commands
@@ -399,7 +399,7 @@ class ArenaTask:
         return commands
 
     def _step_with_own(self, actions: FloatArray, rewards: FloatArray, ends: Ends) -> bool:
-        """Step a tick and judge it by :meth:`reward` and :meth:`ends` where these are a subclass's own."""
+        """Step a tick and judge it by :meth:`reward` and :meth:`ends` if a subclass defines them."""
         arenas, progress, blue = self.arenas, self._progress, self.blue
         field, going = self.settings.field, ~ends.over
         robots, balls = arenas.robots.copy(), arenas.balls.copy()
@@ -445,7 +445,7 @@ class ArenaTask:
         self._seeded = True
 
     def _build(self) -> None:
-        """Build anew everything that a run changes."""
+        """Build again everything that a run changes."""
         settings, n, robots = self.settings, self.n, self.robots
         self.arenas = Arenas(
             settings.field, self._robot_limits, settings.stepped_simulator, settings.period, n
@@ -466,7 +466,7 @@ class ArenaTask:
         self.ended = None
 
     def _begin(self, which: IntArray) -> FloatArray:
-        """Start the episodes of these arenas; their first observations (m, O)."""
+        """Start the episodes of these arenas; return their first observations (m, O)."""
         rows, index = self._pool.take(which)
         self._starts[which] = index
         self._randomiser.draw(which)
@@ -500,6 +500,6 @@ _TASKS[TaskSettings] = ArenaTask
 
 
 def task_of(settings: type[TaskSettings]) -> type[ArenaTask] | None:
-    """Return the task that settings of this class are for; None where no module of its has been imported."""
+    """Return the task of this class of settings; None if its module has not been imported."""
     found = next((_TASKS[one] for one in settings.__mro__ if one in _TASKS), ArenaTask)
     return None if found is ArenaTask else found

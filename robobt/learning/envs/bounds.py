@@ -1,4 +1,4 @@
-"""What the entries of observations can be at most, for Gymnasium's spaces."""
+"""Bounds of observation entries, for Gymnasium's spaces."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ from robobt.world.observation import ObservationSpec
 from robobt.world.state import ROBOT_RADIUS
 
 BUMP = 0.5
-"""What a collision may add to a speed for an instant [m/s]."""
+"""Speed that a collision may add for an instant [m/s]."""
 
 
 def bounded(spec: ObservationSpec, ranges: Mapping[str, float]) -> Box[np.float32]:
-    """Return the space of the vectors of ``spec``; ``ranges`` says how large its quantities are at most.
+    """Return the space of the vectors of ``spec``; ``ranges`` has the largest values of its quantities.
 
     Raises:
-        ValueError: an entry's range is the name of none of them.
+        ValueError: an entry's range names none of them.
     """
     for one in spec.entries:
         if isinstance(one.range, str) and one.range not in ranges:
@@ -35,10 +35,10 @@ def bounded(spec: ObservationSpec, ranges: Mapping[str, float]) -> Box[np.float3
 
 
 def scale_of(spec: ObservationSpec, action: ActionScaling) -> tuple[float, ...]:
-    """Return the typical magnitude of each entry of ``spec``, where a robot acts as ``action`` says.
+    """Return the typical magnitude of each entry of ``spec`` for a robot with this ``action``.
 
     Raises:
-        ValueError: one is not above 0, as the top speed of an action that does not drive.
+        ValueError: a magnitude is not above 0, such as the top speed of an action that does not drive.
     """
     sizes = [one.scale for one in spec.entries]
     found = tuple([getattr(action, size) if isinstance(size, str) else size for size in sizes])
@@ -49,12 +49,12 @@ def scale_of(spec: ObservationSpec, action: ActionScaling) -> tuple[float, ...]:
 
 
 def ranges_of(settings: TaskSettings) -> dict[str, float]:
-    """Return how large the quantities are at most that entries of most observations name as their ranges."""
+    """Return the largest values of the quantities that most observations name as ranges."""
     noise, limits, own = settings.noise, settings.simulator.limits, settings.robot_limits
     fastest = own.max_speed * max(settings.randomisation.top_speed)
     driven = max(fastest, limits.max_speed) + BUMP
     turned = max(own.max_turn, limits.max_turn) + driven / ROBOT_RADIUS
-    # A ball comes off a robot that drives and turns at most so much faster than it was kicked.
+    # A moving, turning robot can add at most this speed to a kicked ball.
     kicked = settings.simulator.kicker.max_speed + driven + turned * ROBOT_RADIUS + BUMP
     far = farthest(settings)
     return {
@@ -67,21 +67,21 @@ def ranges_of(settings: TaskSettings) -> dict[str, float]:
 
 
 def farthest(settings: TaskSettings) -> float:
-    """Return the diagonal inside the walls and what noise may add to it [m]."""
+    """Return the diagonal inside the walls plus the most that noise may add [m]."""
     field, noise = settings.field, settings.noise
     inside = hypot(field.length + 2 * field.goal_line_margin, field.width + 2 * field.margin)
     return inside + CUT_OFF * sqrt(2.0) * (noise.robot_position + noise.ball_position)
 
 
 def seen_speed(settings: TaskSettings, speed: float, position: float) -> float:
-    """Return the largest speed observed of a body this fast whose place has noise of ``position`` [m/s]."""
+    """Return the largest observed speed of a body this fast with position noise ``position`` [m/s]."""
     if settings.velocities == "finite_difference":
         return speed + 2.0 * CUT_OFF * sqrt(2.0) * position / settings.period
     return speed + CUT_OFF * sqrt(2.0) * settings.noise.velocity
 
 
 def seen_turn(settings: TaskSettings, turn: float) -> float:
-    """Return the largest turning rate observed of a robot that turns this fast [rad/s]."""
+    """Return the largest observed turning rate of a robot that turns this fast [rad/s]."""
     if settings.velocities == "finite_difference":
         return turn + 2.0 * CUT_OFF * settings.noise.heading / settings.period
     return turn + CUT_OFF * settings.noise.turn_rate

@@ -1,4 +1,4 @@
-"""What a central critic sees: everybody and the ball, as the team of who is asked about sees the field."""
+"""The input of a central critic: all robots and the ball, from the side of the learner's team."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from robobt.world.team_view import AWAY
 
 
 class Turned(Protocol):
-    """A robot with the cosine and sine of its heading instead of that."""
+    """A robot with the cosine and sine of its heading instead of the heading."""
 
     x: float
     y: float
@@ -39,24 +39,24 @@ def states_of(robots: FloatArray) -> FloatArray:
 def central_view(
     robots: FloatArray, balls: FloatArray, who: Sequence[int], blue: int, own: int, others: int
 ) -> FloatArray:
-    """Compute what the critic sees of the robots ``who``, (n, len(who), entries).
+    """Compute the critic's input for the robots ``who``, (n, len(who), entries).
 
     The entries are those of :class:`Turned` for ``own + others`` robots, and the ball's.
 
-    Both teams see the field as if they attacked towards +x, their own robots first: one critic serves both.
-    Within a team robots stand in their order, so that it is known which is which; a place without a robot
-    shows one at rest behind the field.
+    Both teams see the field as if they attacked towards +x, their own robots first, so one critic serves
+    both. Within a team the robots keep their order, so that each keeps its place; a place without a robot
+    shows a resting robot behind the field.
 
     Args:
         robots: (n, R, size(ROBOT)) in field coordinates.
         balls: (n, size(BALL)).
         who: indices of robots.
-        blue: how many robots, the first, attack towards +x; the others towards -x.
-        own: places for the robot's team.
-        others: for the other.
+        blue: number of robots, the first ones, that attack towards +x; the others towards -x.
+        own: number of places for the robot's team.
+        others: number of places for the other team.
     """
     states = states_of(robots)
-    # Half a turn changes every sign but that of omega.
+    # Half a turn changes every sign except that of omega.
     turn = np.array([1.0 if name == "omega" else -1.0 for name in TURNED.names or ()])
     first, last = states[:, :blue], states[:, blue:]
     seen: dict[bool, FloatArray] = {}

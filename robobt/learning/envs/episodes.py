@@ -1,4 +1,4 @@
-"""How episodes ended, and the shortest time in which they could have."""
+"""Results of episodes, and the shortest possible time."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ from robobt.learning.envs.task import BoolArray, FloatArray, IntArray
 
 
 def straight_line_time(distance: ArrayLike, speed: ArrayLike, acceleration: ArrayLike) -> FloatArray:
-    """Compute the shortest times from rest [s]: speed up, drive on, do not brake.
+    """Compute the shortest times from rest without braking [s].
 
     Args:
-        distance: how far [m].
+        distance: distance to drive [m].
         speed: top speed [m/s].
-        acceleration: how it speeds up [m/s^2].
+        acceleration: acceleration up to the top speed [m/s^2].
     """
     d = np.maximum(np.asarray(distance, dtype=np.float64), 0.0)
     v, a = np.asarray(speed, dtype=np.float64), np.asarray(acceleration, dtype=np.float64)
@@ -25,20 +25,20 @@ def straight_line_time(distance: ArrayLike, speed: ArrayLike, acceleration: Arra
 
 @dataclass(slots=True)
 class Episodes:
-    """Episodes that have ended, one an entry of each array.
+    """Ended episodes, one per entry of each array.
 
     Attributes:
         start: index in the given starts, -1 for a start that was drawn.
         success: ball reached, or goal scored.
         truncated: cut off by the time limit.
-        ticks: how long it took.
-        time: the same [s].
+        ticks: duration in control periods.
+        time: duration [s].
         optimum: the straight line's time for the robot's limits [s]; nan where
             robot or ball started in motion, and for Shoot.
         kick_time: start to the end of the tick in which the kicker first fired
             [s]; nan without a kick.
         total_reward: undiscounted.
-        terms: what each term of the reward contributed to it, a record with their names.
+        terms: contribution of each term of the reward, a record with their names.
     """
 
     start: IntArray

@@ -1,4 +1,4 @@
-"""A policy played from a fixed set of starts, each counted exactly once."""
+"""Evaluation of a policy from a fixed set of starts, each counted exactly once."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ Decide = Callable[[FloatArray], FloatArray]
 
 
 def run_starts(task: ArenaTask, decide: Decide, starts: ArrayLike, seed: int = 0) -> Episodes:
-    """Play one episode from each start, whatever the number of arenas; return them in that order.
+    """Play one episode from each start, with any number of arenas; return them in the order of the starts.
 
     Every start is played to its end, so that short episodes are not counted more
     often than long ones.
 
-    ``starts`` (m, 10) have the columns ``START_COLUMNS``; the task's own run is lost. ``decide`` maps
-    observations (n, O) to actions (n, A); ``seed`` is that of noise and randomisation.
+    ``starts`` (m, 10) have the columns ``START_COLUMNS``; the task's running episodes are lost. ``decide``
+    maps observations (n, O) to actions (n, A); ``seed`` is the seed of noise and randomisation.
     """
     rows = np.atleast_2d(np.array(starts, dtype=np.float64))
     observation = task.reset_to(rows, seed)

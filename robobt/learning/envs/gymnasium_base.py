@@ -34,13 +34,13 @@ Info = dict[str, Any]
 _TRAIL = 400
 
 _INFO = {"is_success": "success", "time": "time", "optimum": "optimum", "kick_time": "kick_time"}
-"""What the infos say of an episode that has ended, and where :class:`Episodes` has it."""
+"""The infos of an ended episode, and their names in :class:`Episodes`."""
 
 
 def settings_for(
     task: str, settings: TaskSettings | Mapping[str, object] | None, render_mode: str | None
 ) -> TaskSettings:
-    """Return the settings of the task of that name; its defaults for None.
+    """Return the settings of the named task; its defaults for None.
 
     Raises:
         KeyError: there is no such task.
@@ -53,11 +53,11 @@ def settings_for(
 
 
 class _OverArenas:
-    """What both interfaces do with the arenas of a task.
+    """The common part of both interfaces.
 
     Attributes:
-        task_name: the task of a class that is for one alone.
-        task: its arenas.
+        task_name: name of the task, in classes for one task only.
+        task: the task's arenas.
     """
 
     task_name: ClassVar[str] = ""
@@ -73,10 +73,10 @@ class _OverArenas:
 
 
 def need_reset(begun: bool, what: str, over: bool = False) -> None:
-    """Raise where a call needs an episode and there is none.
+    """Raise an error if there is no running episode.
 
     Raises:
-        ResetNeeded: none has begun, or the last one is ``over``.
+        ResetNeeded: no episode has begun, or the last one is ``over``.
     """
     if over:
         raise gymnasium.error.ResetNeeded(f"the episode is over; call reset before {what}")
@@ -85,7 +85,7 @@ def need_reset(begun: bool, what: str, over: bool = False) -> None:
 
 
 def checked_action(action: ArrayLike, size: int, whose: str = "the action") -> FloatArray:
-    """Return an action of ``size`` finite numbers, (size,); ``whose`` it is stands in the error.
+    """Return an action of ``size`` finite numbers, (size,); errors name it by ``whose``.
 
     Raises:
         ValueError: it is something else.
@@ -121,14 +121,13 @@ def picture_of(task: ArenaTask | PerRobot, arena: int, *trails: Sequence[Point])
 class TaskEnv(_OverArenas, gymnasium.Env[Observation, Action]):
     """One arena of a task behind Gymnasium's interface.
 
-    Several learners are one agent that commands them all: their observations stand one after the other, and
-    so do their actions; the reward is their mean. There is an agent for each learner in
-    :class:`~robobt.learning.envs.soccer.parallel.SoccerParallelEnv`.
+    Several learners form one agent: their observations and actions are concatenated, and the reward is their
+    mean. :class:`~robobt.learning.envs.soccer.parallel.SoccerParallelEnv` has an agent for each learner.
 
     Args:
-        settings: the task's settings, or the mapping that makes them, as out of a YAML file.
+        settings: the task's settings, or a mapping of their fields, as from a YAML file.
         render_mode: None or "rgb_array".
-        task: name of the task, where the class is not for one alone.
+        task: name of the task, unless the class is for one task only.
 
     Raises:
         KeyError: there is no such task.
@@ -158,12 +157,12 @@ class TaskEnv(_OverArenas, gymnasium.Env[Observation, Action]):
         """Start an episode.
 
         Args:
-            seed: fixes all that follows; without one, the random numbers go on.
+            seed: seed of everything that follows; None continues the random numbers.
             options: ``{"start": (10,)}`` starts there instead of at a drawn
                 place; columns ``robobt.learning.envs.START_COLUMNS``.
 
         Raises:
-            ValueError: an unknown option, or a start that is none.
+            ValueError: an unknown option, or an invalid start.
         """
         super().reset(seed=seed)
         start = _start_of(options)
@@ -180,7 +179,7 @@ class TaskEnv(_OverArenas, gymnasium.Env[Observation, Action]):
         return observation[0].astype(np.float32), {}
 
     def step(self, action: Action) -> tuple[Observation, float, bool, bool, Info]:
-        """Let one control period pass; the last step's info holds what became of the episode.
+        """Advance one control period; the last step's info has the episode's result.
 
         Its keys: ``is_success``, ``time`` [s], ``optimum`` (the straight line's
         time [s], nan without one), ``kick_time`` (nan without a kick [s]) and, for each term of the reward,
@@ -220,20 +219,20 @@ class TaskEnv(_OverArenas, gymnasium.Env[Observation, Action]):
 
 
 class TaskVectorEnv(_OverArenas, VectorEnv[Observation, Action, Any]):
-    """Many arenas in one simulator behind Gymnasium's vector interface.
+    """Many arenas in one simulator, with Gymnasium's vector interface.
 
-    Each learner is an environment of its own. An arena's learners stand one after the other, and their
-    episodes end together; each earns its own reward. The rest is as for :class:`TaskEnv`.
+    Each learner is a separate environment. An arena's learners are adjacent, and their episodes end together;
+    each has its own reward. Otherwise it is like :class:`TaskEnv`.
 
     Args:
-        num_envs: learners of all arenas together, a multiple of an arena's learners.
+        num_envs: number of learners in all arenas, a multiple of an arena's learners.
         settings: as for :class:`TaskEnv`.
-        render_mode: None or "rgb_array", a picture an arena.
+        render_mode: None or "rgb_array", one picture per arena.
         task: as for :class:`TaskEnv`.
 
     Raises:
         KeyError: there is no such task.
-        ValueError: the settings are wrong, or there are not so many learners in whole arenas.
+        ValueError: the settings are wrong, or ``num_envs`` does not fill whole arenas.
     """
 
     metadata: dict[str, Any] = {  # noqa: RUF012 - Gymnasium declares it so
@@ -268,11 +267,11 @@ class TaskVectorEnv(_OverArenas, VectorEnv[Observation, Action, Any]):
         """Start all episodes in a new simulator.
 
         Args:
-            seed: one number for all arenas together; fixes all that follows.
-            options: ``{"start": (m, 10)}`` hands these starts out first.
+            seed: one seed for all arenas and everything that follows.
+            options: ``{"start": (m, 10)}`` uses these starts first.
 
         Raises:
-            ValueError: an unknown option, or starts that are none.
+            ValueError: an unknown option, or invalid starts.
         """
         super().reset(seed=seed)
         start = _start_of(options)
@@ -281,11 +280,10 @@ class TaskVectorEnv(_OverArenas, VectorEnv[Observation, Action, Any]):
         return observation.astype(np.float32), {}
 
     def step(self, actions: Action) -> tuple[Observation, FloatArray, BoolArray, BoolArray, Info]:
-        """Let one control period pass; an episode that ends starts anew in the same step.
+        """Advance one control period; an episode that ends restarts in the same step.
 
-        Where one has ended the infos hold ``final_obs`` (n, O) and ``final_info``
-        with the single environment's keys as arrays (n,), and which of them count
-        in ``_final_obs`` and ``_final_info`` (n,).
+        If any episode has ended, the infos have ``final_obs`` (n, O) and ``final_info`` with the single
+        environment's keys as arrays (n,); ``_final_obs`` and ``_final_info`` (n,) mark the valid entries.
         """
         self._need_reset("step")
         result = self.task.step(np.asarray(actions, dtype=np.float64))
@@ -307,7 +305,7 @@ class TaskVectorEnv(_OverArenas, VectorEnv[Observation, Action, Any]):
         )
 
     def render(self) -> tuple[Picture, ...] | None:
-        """Draw one picture an arena in mode ``rgb_array``; None without a mode."""
+        """Draw one picture per arena in mode ``rgb_array`` and return them; None without a mode."""
         if self.render_mode is None:
             return None
         return tuple(self._picture(arena) for arena in range(len(self.task.arenas.balls)))
@@ -325,7 +323,7 @@ def _start_of(options: Mapping[str, Any] | None) -> ArrayLike | None:
 
 
 def _told(episodes: Episodes) -> dict[str, NDArray[Any]]:
-    """Return what infos say of episodes that have ended."""
+    """Return the infos of ended episodes."""
     terms = {f"reward/{name}": episodes.terms[name] for name in episodes.terms.dtype.names or ()}
     return {key: getattr(episodes, name) for key, name in _INFO.items()} | terms
 

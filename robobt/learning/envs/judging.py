@@ -1,4 +1,4 @@
-"""What the judging of every task begins and ends with, for its compiled loop over the arenas.
+"""The common parts of the compiled loops that judge the arenas of each task.
 
 Python hands such a loop plain tuples of plain arrays, whose types numba finds fastest. The loop begins with
 ``Ledger(*ledger_)`` or ``Report(*report_)`` and views the arrays as records.
@@ -31,7 +31,7 @@ FIELD = numbers_dtype(FieldGeometry)
 
 
 class Report(NamedTuple):
-    """What ``n`` arenas with R robots each report after a tick; see :class:`~robobt.sim.arenas.Arenas`."""
+    """The report of ``n`` arenas with R robots each after a tick; see :class:`~robobt.sim.arenas.Arenas`."""
 
     robots: FloatArray  # (n, R, ROBOT_SIZE)
     balls: FloatArray  # (n, size(BALL))
@@ -41,7 +41,7 @@ class Report(NamedTuple):
 
 
 class Ledger(NamedTuple):
-    """What judging reads of the episodes in ``n`` arenas, and books."""
+    """The bookkeeping of the episodes in ``n`` arenas, which judging reads and updates."""
 
     progress: FloatArray  # (n, size(PROGRESS))
     terms: FloatArray  # (n, number of terms) of the reward, added to
@@ -57,7 +57,7 @@ def report_of(arenas: Arenas) -> Report:
 
 
 def parameters(kind: np.dtype[np.void], **parts: float | BaseModel) -> FloatArray:
-    """Return the record ``kind`` of what a task is judged by as numbers; settings become those of theirs."""
+    """Return the record ``kind`` of a task's judging parameters as numbers, including those of settings."""
     numbers = {
         name: tuple(numbers_of(part, kind[name])) if isinstance(part, BaseModel) else part
         for name, part in parts.items()
@@ -66,7 +66,7 @@ def parameters(kind: np.dtype[np.void], **parts: float | BaseModel) -> FloatArra
 
 
 def fresh(kind: np.dtype[np.void], **fields: float) -> FloatArray:
-    """Return the numbers of a record ``kind`` whose fields are 0 but for these."""
+    """Return the numbers of a record ``kind``, with 0 in all other fields."""
     made = np.zeros(1, kind)
     for name, value in fields.items():
         made[name] = value
@@ -75,7 +75,7 @@ def fresh(kind: np.dtype[np.void], **fields: float) -> FloatArray:
 
 @compiled_inline
 def is_over(ledger: Ledger, arena: int) -> bool:
-    """Return whether the arena's episode ended earlier in this decision: what follows does not count."""
+    """Return whether the arena's episode ended earlier in this decision, so that later ticks do not count."""
     return bool(ledger.terminated[arena] or ledger.truncated[arena])
 
 
@@ -89,7 +89,7 @@ def begin_tick(episode: Progress, fired: bool) -> None:
 
 @compilable
 def goal_of(episode: Progress, ball: Ball, field: FieldGeometry) -> int:
-    """Note where the ball is, and return the sign of x at the goal that it went into, 0 for none."""
+    """Note the ball's position, and return the sign of x of the goal that it entered, 0 for none."""
     half_length, half_width, post = field.length / 2, field.width / 2, field.goal_width / 2
     side = goal_side(episode.ball_x, episode.ball_y, ball.x, ball.y, half_length, half_width, post)
     episode.ball_x = ball.x
@@ -99,12 +99,12 @@ def goal_of(episode: Progress, ball: Ball, field: FieldGeometry) -> int:
 
 @compiled_lean
 def count(time_limit: float, fired: BoolArray, ledger_: Ledger) -> bool:
-    """Count a tick in all arenas, which nothing ends but time; return whether any episode has ended.
+    """Count a tick in all arenas of a task that only time ends; return whether any episode has ended.
 
     Args:
         time_limit: ticks after which episodes are truncated.
         fired: (n,) whether a learner has kicked.
-        ledger_: of the episodes.
+        ledger_: the bookkeeping of the episodes.
     """
     ledger = Ledger(*ledger_)
     episodes = ledger.progress.view(PROGRESS)[..., 0]
@@ -120,11 +120,11 @@ def count(time_limit: float, fired: BoolArray, ledger_: Ledger) -> bool:
 
 @compiled
 def goals(before_: FloatArray, after_: FloatArray, field_: FloatArray) -> IntArray:
-    """Return the sign of x at the goal that each ball goes into in a tick, 0 for none, (n,).
+    """Return the sign of x of the goal that each ball enters in a tick, 0 for none, (n,).
 
     Args:
-        before_: (n, size(BALL)) balls.
-        after_: the same after it.
+        before_: (n, size(BALL)) balls before the tick.
+        after_: (n, size(BALL)) balls after the tick.
         field_: numbers of the field.
     """
     before, after = before_.view(BALL)[..., 0], after_.view(BALL)[..., 0]
@@ -141,15 +141,15 @@ def goals(before_: FloatArray, after_: FloatArray, field_: FloatArray) -> IntArr
 def end_tick(
     ledger: Ledger, arena: int, earned: float, success: bool, failed: bool, time_limit: float
 ) -> bool:
-    """Book what a tick brought; return whether it was the episode's last. Success goes before the time limit.
+    """Book a tick; return whether it was the episode's last. Success comes before the time limit.
 
     Args:
-        ledger: of all arenas.
-        arena: index in it.
+        ledger: the bookkeeping of all arenas.
+        arena: index of the arena.
         earned: reward of the tick.
         success: whether the episode ends in success.
-        failed: whether it ends otherwise, in a state from which nothing follows.
-        time_limit: ticks after which it is truncated.
+        failed: whether the episode ends without success, in a terminal state.
+        time_limit: ticks after which the episode is truncated.
     """
     episode: Progress = ledger.progress.view(PROGRESS)[arena, 0]
     ledger.rewards[arena] += earned

@@ -15,18 +15,18 @@ from robobt.plays.sources import read_sources
 REGISTRIES.append(TASKS)
 
 _digests: dict[str, str] = {}
-"""Of the code of users' tasks, by module, as it was when it was first asked for."""
+"""Hashes of the code of users' tasks, by module, taken at first use."""
 
 
 def find_task(name: str) -> type[ArenaTask]:
-    """Return a task by the name it is registered under, or by Gymnasium's for it.
+    """Return a task by its registered name or by its Gymnasium id.
 
     Args:
-        name: of the task; one in a Python file is ``my_task.py:MyTask``, by its class or its name.
+        name: name of the task; ``my_task.py:MyTask`` for a task in a Python file, by its class or its name.
 
     Raises:
-        KeyError: there is none; the message lists the names there are.
-        PythonFileError: the file cannot be read, or raises as it runs.
+        KeyError: there is no such task; the message lists the known names. PythonFileError: the file cannot
+        be read, or raises as it runs.
     """
     file, _, inner = name.rpartition(":")
     if file.endswith(".py") or name.endswith(".py"):
@@ -56,13 +56,13 @@ def _task_in(file: str, name: str) -> type[ArenaTask]:
 def task_file(settings: TaskSettings) -> tuple[str, str]:
     """Return the file of a user's task, and a hash of it and of what it imports from its folder.
 
-    Both are empty for a task that ships, and for one that was written in no file.
+    Both are empty for a shipped task, and for a task without a file.
     """
     module = _task(settings).__module__
     file = getattr(sys.modules.get(module), "__file__", None)
     if file is None or module.partition(".")[0] == "robobt":
         return "", ""
-    # Read once: what is edited while a run goes on is not what this process runs.
+    # Read once, because edits during a run do not change the code that this process runs.
     if module not in _digests:
         _digests[module] = read_sources([file]).digest()
     return file, _digests[module]
@@ -74,12 +74,12 @@ def make_task(settings: TaskSettings, n: int) -> ArenaTask:
 
 
 def make_rows(settings: TaskSettings, n: int, central: bool = False) -> ArenaTask | PerRobot:
-    """Return arenas of the task with these ``settings`` that have ``n`` learners together, a row each.
+    """Return arenas of the task with these ``settings`` and ``n`` learners in total, one row per learner.
 
-    With ``central`` each row ends with what a central critic sees.
+    With ``central`` each row ends with the additional input of a central critic.
 
     Raises:
-        ValueError: these are not the learners of whole arenas.
+        ValueError: ``n`` does not fill whole arenas.
     """
     each = learners_of(settings)
     if n % each:
@@ -96,7 +96,7 @@ def learners_of(settings: TaskSettings) -> int:
 def _task(settings: TaskSettings) -> type[ArenaTask]:
     task = task_of(type(settings))
     if task is None:
-        # Settings can be made without the module of their task.
+        # Settings can be created without importing their task's module.
         [TASKS[name] for name in TASKS]
         task = task_of(type(settings))
     if task is None:

@@ -1,4 +1,4 @@
-"""Every learner of a task as an arena of its own: how one policy learns for all of them."""
+"""Every learner of a task as a separate row, so that one policy learns for all of them."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ from robobt.sim.arenas import Arenas
 class PerRobot:
     """A :class:`~robobt.learning.envs.task.VectorTask` with a row for each learner of each arena.
 
-    An arena's learners stand one after the other; their episodes end together. The reward is each one's own.
-    With ``central`` an observation is followed by what a central critic sees of the true state besides
+    An arena's learners are adjacent; their episodes end together. Each has its own reward. With ``central``
+    an observation is followed by the additional input of a central critic
     (:meth:`~robobt.learning.envs.arena_task.ArenaTask.central_view`).
     """
 
@@ -50,7 +50,7 @@ class PerRobot:
 
     @property
     def ended(self) -> Episodes | None:
-        """The episodes that the last step ended, once for each learner; None without any."""
+        """The episodes that ended in the last step, once for each learner; None without any."""
         ended = self.task.ended
         return None if ended is None else ended.pick(np.repeat(np.arange(len(ended)), self.each))
 

@@ -1,4 +1,4 @@
-"""What is observed of the arenas: exactly, or with noise, latency and differenced velocities."""
+"""Observation of the arenas: exact, or with noise, latency and differenced velocities."""
 
 from __future__ import annotations
 
@@ -21,10 +21,10 @@ Observe = Callable[[FloatArray, FloatArray], FloatArray]
 
 
 class Perception:
-    """How the state of arenas with ``robots`` robots each is observed; noise is drawn by each arena's own.
+    """Observation of arenas with ``robots`` robots each; each arena's generator draws its noise.
 
     Attributes:
-        follows: whether it has to look after every tick, for what it sees depends on what was before.
+        follows: whether it must observe after every tick, because an observation depends on earlier states.
     """
 
     def __init__(
@@ -66,7 +66,7 @@ class Perception:
         return late
 
     def start(self, robots: FloatArray, balls: FloatArray, which: IntArray) -> FloatArray:
-        """Return the first observations of the arenas ``which``, which have just been placed, (m, O)."""
+        """Return the first observations of the newly placed arenas ``which``, (m, O)."""
         robots, balls = robots[which], balls[which]
         if self._noisy or self._differenced:
             robots, balls = self._disturbed(robots, balls, which, first=True)
@@ -76,7 +76,7 @@ class Perception:
         return seen
 
     def put(self, robots: FloatArray, balls: FloatArray, moved: NDArray[np.bool_]) -> None:
-        """Take no jump for a velocity: those ``moved`` (n, R + 1), the last the ball, were put elsewhere."""
+        """Exclude the jumps of ``moved`` objects (n, R + 1), the last the ball, from velocities."""
         if self._differenced:
             self._last_robots[moved[:, :-1]] = robots[moved[:, :-1]]
             self._last_balls[moved[:, -1]] = balls[moved[:, -1]]
@@ -106,7 +106,7 @@ class Perception:
         return robots, balls
 
     def _draw(self, which: IntArray) -> FloatArray:
-        """Draw a number for each of an arena's, (m, 6 R + 4): one kind of noise changes no other's draws."""
+        """Draw a number for every value, (m, 6 R + 4): one kind of noise must not change another's draws."""
         drawn = self._drawn[: len(which)]
         for row, arena in zip(drawn, which.tolist(), strict=True):
             self._rngs[arena].standard_normal(out=row)

@@ -1,4 +1,4 @@
-"""How episodes have gone so far, in a form that compiled code reads and writes by name."""
+"""The progress of episodes, as a record that compiled code accesses by name."""
 
 from __future__ import annotations
 
@@ -13,19 +13,17 @@ from robobt.world.records import BALL
 
 
 class Progress(Protocol):
-    """An episode so far, all in numbers: a row of :data:`PROGRESS`.
+    """The progress of one episode: a row of :data:`PROGRESS`.
 
     Attributes:
-        ticks: since the start.
-        ticks_held: for how many in a row the ball has lain in the mouth with the dribbler on; where there
-            is a goalkeeper, in its mouth.
-        kick_tick: in which the kicker first fired; -1 before.
-        kick_rewarded: 1 once there was what the reward takes for a kick, or while a shot that it took for
-            one is on its way; else 0.
-        total_reward: undiscounted.
-        ball_x, ball_y: the ball before the tick [m].
-        carried_x, carried_y: where the ball came into the mouth it lies in; nan in none [m].
-        potential: what the state before the tick is worth to a reward that is shaped by it; nan at first.
+        ticks: ticks since the start.
+        ticks_held: ticks in a row with the ball in the mouth and the dribbler on; with a goalkeeper, in the
+            goalkeeper's mouth.
+        kick_tick: tick in which the kicker first fired; -1 before.
+        kick_rewarded: 1 once a kick has been rewarded, or while a rewarded shot is on its way; else 0.
+        total_reward: undiscounted sum of rewards. ball_x, ball_y: position of the ball before the tick [m].
+            carried_x, carried_y: where the ball came into the present mouth [m]; nan if it is in none.
+        potential: potential of the state before the tick, for reward shaping; nan at first.
     """
 
     ticks: float
@@ -41,11 +39,11 @@ class Progress(Protocol):
 
 
 PROGRESS = record_dtype(Progress)
-"""How an episode has gone so far; see :class:`Progress`."""
+"""Record of the progress of an episode; see :class:`Progress`."""
 
 
 def progress_at(balls: FloatArray) -> NDArray[np.void]:
-    """Return the progress of episodes that begin with these balls (m, size(BALL))."""
+    """Return the progress of new episodes with these balls (m, size(BALL))."""
     starts, progress = balls.view(BALL)[:, 0], np.zeros(len(balls), dtype=PROGRESS)
     progress["kick_tick"] = -1.0
     progress["ball_x"], progress["ball_y"] = starts["x"], starts["y"]

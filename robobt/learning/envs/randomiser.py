@@ -1,4 +1,4 @@
-"""Domain randomisation: what differs from episode to episode in each arena."""
+"""Domain randomisation: parameters that differ between an arena's episodes."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ _ACCELERATIONS = ("acceleration", "braking", "lateral_acceleration", "lateral_br
 
 
 class Randomiser:
-    """Sets each arena's parameters at the start of an episode, and holds its commands back.
+    """Sets each arena's parameters at the start of an episode, and delays its commands.
 
-    Speed, accelerations and kicks are those of an arena's first robot, the learner's.
+    Speed, accelerations and kicks are changed for an arena's first robot, the learner.
 
     Attributes:
         kick: (n,) factor on the speed of kicks.
@@ -40,13 +40,13 @@ class Randomiser:
         self._mass = settings.simulator.body.mass
         longest = round(self._ranges.control_delay[1] / arenas.dt) // arenas.sub_steps
         self._delay: IntArray = np.zeros(n, dtype=np.int64)
-        # Whole periods of delay wait here; the rest is the arenas' own switch.
+        # Whole periods of delay are kept here; the arenas handle the remainder.
         self._waiting = np.zeros((longest + 2, *arenas.contact.shape, size(COMMAND)))
         self._newest = 0
         self._all = np.arange(n)
 
     def draw(self, which: IntArray) -> None:
-        """Draw the parameters of these arenas, whose episodes start."""
+        """Draw the parameters of these arenas at the start of their episodes."""
         if not self._active:
             return
         arenas, ranges = self._arenas, self._ranges

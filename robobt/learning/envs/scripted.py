@@ -1,4 +1,4 @@
-"""Policies written by hand over the observations alone: oracles for tests, and players for benchmarks."""
+"""Hand-written policies on the observations: oracles for tests, and players for benchmarks."""
 
 from __future__ import annotations
 
@@ -14,35 +14,35 @@ AIM_GAIN = 6.0
 """Turning rate for each radian off the aim [1/s]."""
 
 _GENTLE_PULL = 1.5
-"""What most dribblers hold a ball with, and more [m/s^2]."""
+"""Deceleration at which most dribblers still hold a ball [m/s^2]."""
 
 _INSIDE = 0.6
 """Share of the goal mouth, around its middle, at which the script kicks."""
 
 BEHIND = 0.1
-"""Where a robot that has the ball stands behind it [m]."""
+"""Distance behind the ball of a robot that has it [m]."""
 
 _ROUND = 0.3
-"""How far behind the ball and beside it the way leads round it [m]."""
+"""Distance behind and beside the ball of the way round it [m]."""
 
 _IN_MOUTH = 0.13
-"""A ball whose centre is no farther lies in the mouth [m]."""
+"""A ball whose centre is within this distance is in the mouth [m]."""
 
 _SHOOTING = 1.7
-"""How far from the goal it kicks at most [m]."""
+"""Largest distance from the goal for a kick [m]."""
 
 _CORNER = 0.85
-"""Where it aims between the goalkeeper's post, 0, and the other, 1."""
+"""Aim between the post nearer to the goalkeeper, 0, and the other post, 1."""
 
 _CARRYING, _CAREFUL_TURN = 0.4, 2.5
 """Share of its top speed, and turning rate with the ball [rad/s]."""
 
 _AIMED = 0.05
-"""How far off it kicks [rad]."""
+"""Largest angle error for a kick [rad]."""
 
 
 _LOOK_AHEAD = 1.5
-"""For how long a way has to be free [s]."""
+"""Time for which a way has to be free [s]."""
 
 
 def straight_drive(observation: FloatArray) -> FloatArray:
@@ -62,14 +62,14 @@ def drive_and_face(observation: FloatArray, max_turn: float) -> FloatArray:
 
 
 def straight_drive_among(observation: FloatArray) -> FloatArray:
-    """Do the same among others, looking at none of them, (n, 31) -> (n, 3)."""
+    """Drive straight at the ball and ignore other robots, (n, 31) -> (n, 3)."""
     return np.column_stack((observation[:, :2], np.zeros(len(observation))))
 
 
 def freest_way(observation: FloatArray) -> FloatArray:
-    """Drive the way that leads to the ball best of those that stay free until it is there, (n, 31) -> (n, 3).
+    """Drive the best way to the ball that stays free until the robot is there, (n, 31) -> (n, 3).
 
-    A way costs what it lacks in speed to the ball, and more the sooner it is not free any more.
+    The cost of a way is its lack of speed towards the ball, and increases the sooner it is blocked.
     """
     fast, slow = (2.0 * np.pi * np.arange(count) / count for count in (WAYS, SLOW_WAYS))
     ahead = np.concatenate((np.cos(fast), 0.5 * np.cos(slow), [0.0]))
@@ -86,7 +86,7 @@ def freest_way(observation: FloatArray) -> FloatArray:
 
 
 def crowd(observation: FloatArray, learners: int) -> FloatArray:
-    """Drive everybody at the ball, (n, learners * size of a team's view) -> (n, learners * 4)."""
+    """Drive all learners at the ball, (n, learners * size of a team's view) -> (n, learners * 4)."""
     ball = observation.reshape(len(observation), learners, -1)[..., BALL : BALL + 2]
     actions = np.full((len(observation), learners, SCORE_ACTION.size), -1.0)
     actions[..., :2] = ball / np.maximum(np.linalg.norm(ball, axis=-1, keepdims=True), 1e-6)
@@ -97,9 +97,9 @@ def crowd(observation: FloatArray, learners: int) -> FloatArray:
 
 
 def drive_to_shoot(observation: FloatArray, max_turn: float) -> FloatArray:
-    """Drive at full speed to where the ball is in the mouth, facing the goal; round the ball from before it.
+    """Drive at full speed behind the ball, facing the goal; first round the ball if in front of it.
 
-    It takes (n, 8) and answers (n, 3).
+    It maps (n, 8) to (n, 3).
     """
     sin_ball, cos_ball, distance = observation[:, :3].T
     sin_goal, cos_goal = observation[:, 6:].T
@@ -119,7 +119,7 @@ def turn_and_kick(
 ) -> FloatArray:
     """Turn to the middle of the goal and kick when the ball will leave well between the posts.
 
-    It takes (n, 10) and answers (n, 2); ``pull`` is what the dribbler is relied on to hold with [m/s^2].
+    It maps (n, 10) to (n, 2); ``pull`` is the acceleration at which the dribbler holds the ball [m/s^2].
     """
     ball_x, ball_y, _, sideways, _, _, sin_upper, cos_upper, sin_lower, cos_lower = observation.T
     upper = np.arctan2(sin_upper, cos_upper)
@@ -128,7 +128,7 @@ def turn_and_kick(
     middle = np.arctan2(np.sin(lower + half), np.cos(lower + half))
     leaving = np.arctan2(sideways, scaling.kick_speed)
     off = np.arctan2(np.sin(middle - leaving), np.cos(middle - leaving))
-    # A ball at distance L that is turned with at w needs a pull of w^2 L to stay.
+    # Turning at rate w with the ball at distance L needs a pull of w^2 L.
     most = np.minimum(scaling.max_turn, np.sqrt(pull / np.hypot(ball_x, ball_y)))
     omega = np.clip(AIM_GAIN * off, -most, most)
     kick = np.where(np.abs(off) < _INSIDE * half, 1.0, -1.0)
@@ -136,9 +136,9 @@ def turn_and_kick(
 
 
 def drive_and_kick(observation: FloatArray, scaling: ActionScaling = SCORE_ACTION) -> FloatArray:
-    """Get the ball, carry it towards the goal, and kick from near at the corner farther from the goalkeeper.
+    """Get the ball, carry it towards the goal, and kick at the corner farther from the goalkeeper.
 
-    It takes (n, 19), :data:`robobt.world.scoring.SCORE_ON_GOALKEEPER`, and answers (n, 4).
+    It maps (n, 19), :data:`robobt.world.scoring.SCORE_ON_GOALKEEPER`, to (n, 4).
     """
     ball, posts = observation[:, 3:5], observation[:, 9:13].reshape(-1, 2, 2)
     (ball_x, ball_y), (post_x, post_y) = ball.T, np.moveaxis(posts, -1, 0)

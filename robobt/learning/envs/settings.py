@@ -15,7 +15,7 @@ from robobt.world.field import DIVISION_B, FIELDS, FieldGeometry
 from robobt.world.limits import RobotLimits
 
 Span = Annotated[tuple[float, float], Field(description="least and most")]
-"""A range that is drawn from evenly."""
+"""A range for uniform draws."""
 
 HARDWARE_CHALLENGE = FieldGeometry(
     length=6.0, width=4.0, goal_width=0.7, defense_width=2.0, defense_depth=0.8
@@ -62,12 +62,12 @@ def _simulator(value: object) -> object:
 
 
 def _complete(value: Mapping[str, object]) -> bool:
-    """Return whether the mapping is what a settings object was written out as."""
+    """Return whether the mapping is a settings object in serialised form."""
     return set(SimSettings.model_fields) <= set(value)
 
 
 class NoiseSettings(Settings):
-    """Standard deviations of what is observed; cut off at four of them."""
+    """Standard deviations of observation noise, cut off at four times their value."""
 
     robot_position: float = Field(0.0, ge=0, le=0.5, description="of x and y of the robot [m]")
     ball_position: float = Field(0.0, ge=0, le=0.5, description="of x and y of the ball [m]")
@@ -79,9 +79,9 @@ class NoiseSettings(Settings):
 
 
 class RandomisationSettings(OrderedSettings):
-    """What differs from episode to episode: each is drawn evenly from its range at the start.
+    """Domain randomisation: each parameter is drawn uniformly from its range at the start of an episode.
 
-    All but the delay are factors on the simulator's own value.
+    All except the delay are factors on the simulator's value.
     """
 
     friction: Span = Field((1.0, 1.0), description="on the ball's sliding and rolling deceleration")
@@ -107,7 +107,7 @@ class RandomisationSettings(OrderedSettings):
 
 
 class TaskSettings(OrderedSettings):
-    """What all environments have in common; a task has its own defaults, reward, starts and ends."""
+    """Settings common to all environments; a task has its own defaults, reward, starts and ends."""
 
     action: ActionScaling = SCORE_ACTION
     time_limit: int = Field(334, ge=1, le=100_000, description="ticks to the end of an episode")
@@ -126,13 +126,13 @@ class TaskSettings(OrderedSettings):
         "true", description="the bodies' own velocities, or differences of two observed positions, 0 at first"
     )
     noise: NoiseSettings = NoiseSettings()
-    latency: int = Field(0, ge=0, le=20, description="age of what is observed [ticks]")
+    latency: int = Field(0, ge=0, le=20, description="age of observations [ticks]")
     randomisation: RandomisationSettings = RandomisationSettings()
 
     @model_validator(mode="before")
     @classmethod
     def _in_part(cls, data: object) -> object:
-        """Let a group that is given in part keep the rest of what the task says of it."""
+        """Complete a partly given group with the task's defaults."""
         if not isinstance(data, Mapping):
             return data
         result = dict(data)
@@ -140,7 +140,7 @@ class TaskSettings(OrderedSettings):
             own = cls.model_fields[name].default if name in cls.model_fields else None
             if isinstance(own, Settings) and not isinstance(own, SimSettings) and isinstance(value, Mapping):
                 kept = own.model_dump(exclude_unset=True)
-                # What one kind of action is scaled by means nothing to another.
+                # The scale of one kind of action does not apply to another.
                 if value.get("kind", kept.get("kind")) == kept.get("kind"):
                     result[name] = {**kept, **value}
         return result
@@ -165,12 +165,12 @@ class TaskSettings(OrderedSettings):
 
     @property
     def ball_speed(self) -> float:
-        """How fast the ball is at most as an episode starts [m/s]."""
+        """Highest ball speed at the start of an episode [m/s]."""
         return 0.0
 
     @property
     def robot_limits(self) -> RobotLimits:
-        """What the robot can do."""
+        """The robot's limits."""
         return self.simulator.limits if self.limits is None else self.limits
 
     @property

@@ -1,4 +1,4 @@
-"""Arenas of several worlds side by side, so that one policy learns in all of them."""
+"""Arenas of several worlds combined, so that one policy learns in all of them."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ from robobt.learning.envs.task import FloatArray, StepResult, VectorTask
 
 
 class SeveralWorlds:
-    """The arenas of ``parts`` one after the other as one :class:`~robobt.learning.envs.task.VectorTask`.
+    """The arenas of all ``parts`` as one :class:`~robobt.learning.envs.task.VectorTask`.
 
-    The parts are the same task in other worlds: simulators, delays, opponents. What a policy sees does not
-    tell in which it is.
+    The parts are the same task in different worlds: simulators, delays, opponents. A policy does not observe
+    which world it is in.
 
     Raises:
         ValueError: no parts, or parts that differ in what is observed or done.

@@ -22,12 +22,12 @@ class ArenasVecEnv(VecEnv):
     """A vector environment behind Stable-Baselines3's interface: one simulator instead of many processes.
 
     ``ArenasVecEnv(gymnasium.make_vec("GoToBall-v0", 64, vectorization_mode="vector_entry_point"))``. An
-    episode that ends starts anew in the same step; its infos hold ``terminal_observation``,
+    episode that ends restarts in the same step; its infos hold ``terminal_observation``,
     ``TimeLimit.truncated``, ``is_success`` and ``episode`` with the return ``r``, the length in decisions
     ``l`` and the time ``t`` [s].
 
     Args:
-        envs: such an environment.
+        envs: the Gymnasium vector environment.
     """
 
     def __init__(self, envs: TaskVectorEnv) -> None:
@@ -37,7 +37,7 @@ class ArenasVecEnv(VecEnv):
         self._returns, self._lengths = np.zeros(envs.num_envs), np.zeros(envs.num_envs, dtype=np.int64)
 
     def reset(self) -> NDArray[np.float32]:
-        """Start all episodes anew; a seed given by ``seed`` before fixes all that follows."""
+        """Restart all episodes; a seed set by ``seed`` before seeds everything that follows."""
         seen, _ = self.envs.reset(seed=self._seeds[0])
         self._reset_seeds()
         self._returns[:], self._lengths[:] = 0.0, 0
@@ -48,7 +48,7 @@ class ArenasVecEnv(VecEnv):
         self._actions = actions
 
     def step_wait(self) -> tuple[NDArray[np.float32], NDArray[np.float32], NDArray[np.bool_], list[Info]]:
-        """Let a decision pass."""
+        """Advance one decision."""
         seen, reward, terminated, truncated, info = self.envs.step(self._actions)
         self._returns += reward
         self._lengths += 1

@@ -1,4 +1,4 @@
-"""Where episodes start: drawn once from a seed, so that sets of starts can be held out."""
+"""Starts of episodes, drawn from a seed so that sets of starts can be held out."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ START_COLUMNS = (*ROBOT_COLUMNS, *BALL_COLUMNS)
 
 
 def columns_of(robots: int) -> tuple[str, ...]:
-    """Return the columns of a start with so many robots: each of them, then the ball."""
+    """Return the columns of a start with this number of robots: the robots, then the ball."""
     if robots == 1:
         return START_COLUMNS
     names = [f"robot_{k}_{name}" for k in range(robots) for name in ROBOT_COLUMNS]
@@ -34,9 +34,9 @@ def split(rows: FloatArray, robots: int) -> tuple[FloatArray, FloatArray, FloatA
 
 
 def start_parts(rows: FloatArray, robots: int) -> tuple[RecordArray, RecordArray, FloatArray]:
-    """Return robots (m, robots) and balls (m,) of starts by the names of their numbers, and the rest.
+    """Return robots (m, robots) and balls (m,) of starts as records, and the remaining columns.
 
-    They share their memory with the ``rows`` (m, S): what is assigned to them is in the starts.
+    They are views of the ``rows`` (m, S): assignments to them change the starts.
     """
     bodies, balls, rest = split(rows, robots)
     return bodies.view(ROBOT)[..., 0], balls.view(BALL)[:, 0], rest
@@ -48,7 +48,7 @@ def places_of(records: RecordArray) -> FloatArray:
 
 
 def check_starts(rows: FloatArray, columns: Sequence[str], robots: int, field: FieldGeometry) -> None:
-    """Check starts (m, S) that somebody else has written.
+    """Check given starts (m, S).
 
     Raises:
         ValueError: other columns, a number that is not finite, or a place outside the walls.
@@ -65,10 +65,10 @@ def check_starts(rows: FloatArray, columns: Sequence[str], robots: int, field: F
 
 
 GIVE_UP = 1000
-"""Draws of a start after which there is none that fits."""
+"""Number of draws after which no start is found."""
 
 _BLOCK = 8
-"""Starts that an arena draws at a time: drawing one takes as long."""
+"""Number of starts that an arena draws at a time, because drawing one takes as long."""
 
 Sampler = Callable[[np.random.Generator, int], FloatArray]
 
@@ -80,12 +80,12 @@ def velocities(rng: np.random.Generator, speed: Span, count: int) -> tuple[Float
 
 
 class StartPool:
-    """Starts handed out one after the other: given ones first, then those that each arena draws for itself.
+    """A queue of starts: given ones first, then those that each arena draws itself.
 
     Args:
-        sample: draws so many starts.
+        sample: function that draws a number of starts.
         rngs: a generator for each arena.
-        columns: of a start.
+        columns: columns of a start.
     """
 
     def __init__(self, sample: Sampler, rngs: Sequence[np.random.Generator], columns: int) -> None:
@@ -97,7 +97,7 @@ class StartPool:
         self._next_given = 0
 
     def give(self, starts: FloatArray) -> None:
-        """Hand these out next, and forget those given before."""
+        """Use these starts next, and drop those given before."""
         self._given = starts
         self._next_given = 0
 

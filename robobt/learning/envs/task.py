@@ -1,4 +1,4 @@
-"""What a learner needs of an environment: many arenas, stepped together."""
+"""The interface that a learner needs: many arenas, stepped together."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ IntArray = NDArray[np.int64]
 
 
 class Ends(NamedTuple):
-    """How the episodes of ``n`` arenas have ended, (n,) each; see :class:`StepResult`."""
+    """The ends of the episodes of ``n`` arenas, (n,) each; see :class:`StepResult`."""
 
     terminated: BoolArray
     truncated: BoolArray
@@ -22,13 +22,13 @@ class Ends(NamedTuple):
 
     @classmethod
     def none(cls, n: int) -> Ends:
-        """Return those of ``n`` episodes that go on."""
+        """Return the ends of ``n`` running episodes."""
         rows = np.zeros((3, n), dtype=np.bool_)
-        # Unpacked, they cost three times as much.
+        # Unpacking them would cost three times as much.
         return cls(rows[0], rows[1], rows[2])
 
     def copy(self) -> Ends:
-        """Return what does not change with these."""
+        """Return a copy with these changes."""
         return Ends(*(part.copy() for part in self))
 
     @property
@@ -39,16 +39,15 @@ class Ends(NamedTuple):
 
 @dataclass(slots=True)
 class StepResult:
-    """What one control tick of all arenas brought; the arrays are the receiver's own.
+    """The result of one step of all arenas; the receiver owns the arrays.
 
     Attributes:
-        observation: (n, O) what the next action is decided on: of the new
-            episode where one has ended.
+        observation: (n, O) input of the next action; of the new episode where one has ended.
         reward: (n,).
-        terminated: (n,) the episode ended in a state from which nothing follows.
+        terminated: (n,) the episode ended in a terminal state.
         truncated: (n,) the time limit cut the episode off.
-        final_observation: (n, O) what this tick led to; differs from
-            ``observation`` only where an episode has ended.
+        final_observation: (n, O) the observation after this step; it differs from ``observation`` only where
+            an episode has ended.
         success: (n,) the episode ended in success.
     """
 
@@ -61,18 +60,18 @@ class StepResult:
 
 
 class VectorTask(Protocol):
-    """``n`` arenas of one environment. An episode that ends starts anew in the same step."""
+    """``n`` arenas of one environment. An episode that ends restarts in the same step."""
 
     n: int
     observation_size: int
     action_size: int
 
     def reset(self, seed: int | None = None) -> FloatArray:
-        """Start all arenas anew, in a new simulator, and return (n, O) observations.
+        """Restart all arenas, in a new simulator, and return (n, O) observations.
 
-        A task that is reset with a ``seed`` goes on as a new one with that seed
-        would, bit for bit. Without one, its random numbers go on.
+        A task reset with a ``seed`` behaves like a new task with that seed, bit for bit. Without a seed its
+        random numbers continue.
         """
 
     def step(self, actions: FloatArray) -> StepResult:
-        """Let one control period pass under (n, A) ``actions`` in [-1, 1]; return what came of it."""
+        """Advance one control period with (n, A) ``actions`` in [-1, 1]; return the result."""

@@ -1,4 +1,4 @@
-"""What a task written in Python is told of a tick, and what is wrong with what it answers."""
+"""The tick that a task written in Python receives, and checks of its results."""
 
 from __future__ import annotations
 
@@ -24,21 +24,20 @@ class TaskError(RobobtError, RuntimeError):
 
 @dataclass(slots=True)
 class Tick:
-    """A tick of all arenas, as :meth:`ArenaTask.ends` and then :meth:`ArenaTask.reward` are told of it.
+    """A tick of all arenas, passed to :meth:`ArenaTask.ends` and then to :meth:`ArenaTask.reward`.
 
     Attributes:
-        now: robots and balls after it, in field coordinates; ``now.me`` is the first learner.
-        before: the same before it.
-        contact: (n, R) in whose mouth the ball lies.
-        kicked: (n, R) whose kicker has fired.
-        touch: (n,) who touched the ball last, -1 for nobody.
-        goal: (n,) the sign of x at the goal that the ball has gone into, 0 for none.
+        now: robots and balls after the tick, in field coordinates; ``now.me`` is the first learner.
+        before: robots and balls before the tick.
+        contact: (n, R) whether the ball is in each robot's mouth.
+        kicked: (n, R) whether each robot's kicker has fired.
+        touch: (n,) index of the last robot that touched the ball, -1 for none.
+        goal: (n,) the sign of x of the goal that the ball has entered, 0 for none.
         actions: (n, A) in [-1, 1].
-        ticks: (n,) how long each episode has gone on.
-        success: (n,) which episodes it ends in success: by the task that is subclassed, then by
-            :meth:`ArenaTask.ends`.
-        failed: (n,) which it ends otherwise.
-        terms: (n,) each, the reward's terms of the task that is subclassed, by their names.
+        ticks: (n,) ticks since the start of each episode.
+        success: (n,) episodes that end with success: by the base task, then also by :meth:`ArenaTask.ends`.
+        failed: (n,) episodes that end without success.
+        terms: (n,) each, the reward's terms of the base task, by name.
     """
 
     now: Seen
@@ -55,10 +54,10 @@ class Tick:
 
 
 def call(task: object, part: str, *given: Any) -> Any:
-    """Call a part of a task, and name line, class and part where it goes wrong.
+    """Call a part of a task; errors name its line, class and part.
 
     Raises:
-        TaskError: for any error of one that is not robobt's own.
+        TaskError: for any error in a part that is not robobt's.
     """
     try:
         return getattr(task, part)(*given)
@@ -71,7 +70,7 @@ def call(task: object, part: str, *given: Any) -> Any:
 
 
 def error_of(task: type, part: str, error: BaseException) -> TaskError:
-    """Return an error in a part of a task as one that names the line of the task's file that led to it."""
+    """Return an error in a part of a task as one that names the line in the task's file."""
     file = getattr(sys.modules.get(task.__module__), "__file__", None)
     lines = [frame.lineno for frame in traceback.extract_tb(error.__traceback__) if frame.filename == file]
     place = f"{Path(file).name}:{lines[-1]}: " if file and lines else ""
@@ -83,7 +82,7 @@ def checked_starts(task: object, columns: int, rng: np.random.Generator, count: 
     """Return ``count`` starts that a task's ``sample`` draws with ``rng``, (count, columns).
 
     Raises:
-        TaskError: it fails, or what it returns is of another shape or not finite.
+        TaskError: it fails, or its result has another shape or is not finite.
     """
     rows = call(task, "sample", rng, count)
     if np.shape(rows) != (count, columns):
@@ -95,10 +94,10 @@ def checked_starts(task: object, columns: int, rng: np.random.Generator, count: 
 
 
 def checked_ends(task: object, tick: Tick, n: int) -> tuple[BoolArray, BoolArray]:
-    """Return which of ``n`` episodes a task's own ``ends`` ends in success, and which otherwise.
+    """Return which of ``n`` episodes a task's ``ends`` ends with success, and which without.
 
     Raises:
-        TaskError: it fails, or answers something else.
+        TaskError: it fails, or returns something else.
     """
     parts = call(task, "ends", tick)
     if (
@@ -117,7 +116,7 @@ def checked_ends(task: object, tick: Tick, n: int) -> tuple[BoolArray, BoolArray
 
 
 def end_by(task: object, tick: Tick, ends: Ends, time_limit: int) -> None:
-    """Fill ``ends`` by a task's own ``ends`` and by the time limit, but for episodes that had ended already.
+    """Fill ``ends`` by a task's ``ends`` and the time limit, except for episodes that have already ended.
 
     Raises:
         TaskError: see :func:`checked_ends`.
@@ -132,10 +131,10 @@ def end_by(task: object, tick: Tick, ends: Ends, time_limit: int) -> None:
 
 
 def checked_terms(task: object, tick: Tick, n: int) -> dict[str, FloatArray]:
-    """Return the terms of a task's own ``reward`` in ``n`` arenas, (n,) each.
+    """Return the terms of a task's ``reward`` in ``n`` arenas, (n,) each.
 
     Raises:
-        TaskError: it fails, or a term is of another shape or not finite.
+        TaskError: it fails, or a term has another shape or is not finite.
     """
     terms = call(task, "reward", tick)
     if not isinstance(terms, Mapping):

@@ -1,6 +1,6 @@
-"""Opponents to train against, compiled for many arenas: what plays decide, without their trees.
+"""Compiled opponents for training in many arenas: the decisions of plays, without their trees.
 
-A new one takes one file, one's own as well as one here: anything that fills commands in a task's ``oppose``
-(docs/own_tasks.md). Those here drive by :mod:`robobt.learning.opponents.straight` or by the laws of skills,
-on arenas as :mod:`robobt.learning.opponents.sides` shows them.
+A new opponent takes one file, here or of your own: any code that fills in commands in a task's ``oppose``
+(docs/own_tasks.md). The opponents here drive by :mod:`robobt.learning.opponents.straight` or by the compiled
+code of skills, and see arenas through :mod:`robobt.learning.opponents.sides`.
 """

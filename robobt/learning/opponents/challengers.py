@@ -1,9 +1,9 @@
-"""Field players that do what the play ``team_player`` does in open play, over many arenas.
+"""Field players that act like the play ``team_player`` in open play, over many arenas.
 
-One goes for the ball, gets it and keeps it. Of the play's options for that robot these are here:
-``KickLoose``, letting go of a ball carried too far, ``SettleBall``, carrying the ball (straight at the other
-goal, where the play looks for the best place), ``GoToBall`` and ``PickUpBall``. A rolling ball is met where
-the team's plan meets it, but not caught as softly as ``ReceivePass`` does.
+One robot goes for the ball, gets it and keeps it. These of the play's options for that robot are implemented:
+``KickLoose``, releasing a ball carried too far, ``SettleBall``, carrying the ball (straight at the other
+goal, while the play searches for the best place), ``GoToBall`` and ``PickUpBall``. A rolling ball is met
+where the team's plan meets it, but not caught as softly as by ``ReceivePass``.
 """
 
 from __future__ import annotations
@@ -70,11 +70,12 @@ from robobt.world.records import (
 from robobt.world.state import BallState, Frame, RobotState
 
 CHALLENGE = "challenge"
-"""The role of a field player that does what ``team_player`` does in open play.
+"""The role of a field player that acts like ``team_player`` in open play.
 
-Of a team's challengers the one that has the ball soonest goes for it, by the same law as in the plan
-(:mod:`robobt.skills.tactics.attacker`), and the others are a wall; all are one while the ball is in a
-defence area. Nobody marks, supports, passes or shoots. The play's own speed is a ``player_speed`` of 3 m/s.
+The team's challenger that can have the ball soonest goes for it, by the same rule as in the plan
+(:mod:`robobt.skills.tactics.attacker`), and the others form a wall; all form the wall while the ball is in a
+defence area. They do not mark, support, pass or shoot. The play's speed corresponds to a ``player_speed`` of
+3 m/s.
 """
 
 
@@ -102,7 +103,7 @@ class _Team(Protocol):
 
 
 class _Plan(Protocol):
-    """Which of a team goes for the ball, a row of it, and since when [s]."""
+    """The team's attacker (its row), and since when [s]."""
 
     attacker: float
     since: float
@@ -153,7 +154,7 @@ class Challengers:
         period: control period [s].
         n: number of arenas.
         roles: by the robots' indices; those with other roles are left alone.
-        blue: how many of an arena's robots, the first, attack towards +x.
+        blue: number of an arena's robots, the first ones, that attack towards +x.
         speed: their top speed [m/s]; None for the limits'.
         tactics: of their teams.
     """
@@ -189,7 +190,7 @@ class Challengers:
             rows = np.array([*range(first, last), *others], dtype=np.int64)
             parts = (trip_of(own[0], (0.0, 0.0)), scene_of(frame), *driving, self._tactics, numbers_of(field))
             self._sides.append((1.0 if first == 0 else -1.0, last - first, rows, np.concatenate(parts)))
-            # Whoever asks first of all is alone, and goes.
+            # The first robot that asks is alone, so it goes for the ball.
             self._begin.append([float(self._who[first:last].argmax()), 0.0])
         self._period = period
         self._ticks = np.zeros(n)
@@ -199,7 +200,7 @@ class Challengers:
         self.restart(np.arange(n))
 
     def restart(self, which: NDArray[np.int64]) -> None:
-        """Forget what was seen in the arenas ``which``."""
+        """Forget earlier observations in the arenas ``which``."""
         self._ticks[which] = 0.0
         self._memory[which] = _FRESH
         self._plans[:, which] = np.reshape(self._begin, (-1, 1, 2))
@@ -348,7 +349,7 @@ def _carried_far(x: float, y: float, alone: bool, memory: _Memory) -> bool:
 
 @compiled
 def _carry(team: _Team, movers: Sequence[Mover], time: float, memory: _Memory, command: Command) -> None:
-    """Do what ``DribbleTo`` does, to before the other goal."""
+    """Act like ``DribbleTo``, with a target in front of the other goal."""
     trip, scene, own, limits = team.trip, team.scene, team.own, team.dribbles
     me = trip.me
     trip.x, trip.y = scene.half_length - scene.area_depth - _BEFORE_AREA, 0.0
@@ -369,7 +370,7 @@ def _comes(team: _Team, speed: float) -> bool:
 
 @compiled
 def _meet(team: _Team, movers: Sequence[Mover], speed: float, rolling: float, command: Command) -> None:
-    """Get onto the way of a ball that comes, facing it: here if the robot is near, else where it is first."""
+    """Get onto the line of a coming ball, facing it: here if it is near, else where the robot is first."""
     trip, scene, ball, given = team.trip, team.scene, team.scene.ball, team.given
     me = trip.me
     ux, uy = ball.vx / speed, ball.vy / speed
@@ -396,7 +397,7 @@ def _meet(team: _Team, movers: Sequence[Mover], speed: float, rolling: float, co
 
 @compiled
 def _get(team: _Team, movers: Sequence[Mover], memory: _Memory, command: Command) -> None:
-    """Do what ``GoToBall`` and ``PickUpBall`` do."""
+    """Act like ``GoToBall`` and ``PickUpBall``."""
     trip, own, given = team.trip, team.own, team.given
     me, ball = trip.me, team.scene.ball
     at_ball = is_at_ball(me, ball, memory.at_ball > 0.0, HANDOVER_DISTANCE, FACING_BALL)

@@ -1,4 +1,4 @@
-"""Field players of a few simple kinds over many arenas: who opposes learners, and the scripts to beat."""
+"""Simple field players over many arenas: opponents of learners, and scripts to beat."""
 
 from __future__ import annotations
 
@@ -23,14 +23,14 @@ from robobt.world.records import BALL, ROBOT, Ball, Robot
 
 
 class Role(IntEnum):
-    """What a field player does.
+    """The role of a field player.
 
-    ``still`` stands; ``press`` drives at the ball. ``wall`` stands where the skill ``Wall`` does, at the edge
-    of its own defence area on the ball's line to its goal, several of them side by side; ``mark`` where
-    ``MarkOpponent`` does, but that whom it marks already is not preferred. ``attack`` and ``pass``: whoever
-    of them is nearest fetches the ball and carries it to a shot at the corner farther from the goalkeeper, or
-    turns to the mate with the freest way and passes; the others wait, those who attack before the goal.
-    ``redirect`` waits on the ball's way, turned to the goal, and kicks it as it comes.
+    ``still`` stands still; ``press`` drives at the ball. ``wall`` stands where the skill ``Wall`` does, at
+    the edge of its own defence area on the line from ball to goal, several side by side. ``mark`` stands
+    where ``MarkOpponent`` does, without preferring its present opponent. ``attack`` and ``pass``: the nearest
+    of them fetches the ball and carries it to a shot at the corner farther from the goalkeeper, or turns to
+    the team-mate with the freest lane and passes; the others wait, attackers in front of the goal.
+    ``redirect`` waits on the ball's line, facing the goal, and kicks the ball when it arrives.
     """
 
     STILL = 0
@@ -46,26 +46,26 @@ PLAYERS = tuple(role.name.lower() for role in Role)
 """The roles as settings name them."""
 _FIELD = numbers_dtype(FieldGeometry)
 _GENTLE = 2.5
-"""At most so fast with the ball [rad/s]."""
+"""Highest turning rate with the ball [rad/s]."""
 _CARRYING = 1.2
-"""How fast they drive with it [m/s]."""
+"""Speed with the ball [m/s]."""
 _NEAR = 1.9
-"""From this far they shoot [m]."""
+"""Distance from which they shoot [m]."""
 _AIMED = 0.06
-"""How far off they kick [rad]."""
+"""Largest angle error for a kick [rad]."""
 SHOT = 6.0
 """Speed of shots [m/s]."""
 _LEAD = 0.5
-"""How far ahead a rolling ball is thought of [s]."""
+"""How far ahead a rolling ball is predicted [s]."""
 _ARRIVES = 0.8
-"""Speed with which a pass comes to a mate [m/s]."""
+"""Speed with which a pass reaches a team-mate [m/s]."""
 _KEPT, _ROLLING = 0.66, 0.3
-"""What is left of a kick's speed once the ball rolls, and how it slows down then [m/s^2]."""
+"""Share of a kick's speed that remains once the ball rolls, and its deceleration then [m/s^2]."""
 _MOUTH = 0.09
-"""How far before a robot's centre the ball lies in its mouth [m]."""
+"""Distance from a robot's centre to the ball in its mouth [m]."""
 _BESIDE = MarkOpponent.gap
 _FREE = 0.35
-"""A way to a mate that passes nobody nearer is free [m]."""
+"""A lane to a team-mate is free if no robot is closer to it than this [m]."""
 
 
 class FieldPlayers:
@@ -76,7 +76,7 @@ class FieldPlayers:
         limits: what they can do.
         period: control period [s].
         roles: by the robots' indices, names of :class:`Role`; the others' are left alone.
-        blue: how many of an arena's robots, the first, attack towards +x.
+        blue: number of an arena's robots, the first ones, that attack towards +x.
         speed: their top speed [m/s]; None for the limits'.
     """
 
@@ -147,7 +147,7 @@ def _decide(
                 target = _walled(field, side, roles, r)
             elif role == Role.REDIRECT:
                 x, y = _coming(me, ball)
-                # There its mouth is to be, not its middle.
+                # The robot's mouth should be there, not its centre.
                 target = x - _MOUTH * cos(me.heading), y - _MOUTH * sin(me.heading)
                 facing, _ = shot_at(field, side, me)
                 kick = SHOT
@@ -176,16 +176,16 @@ def _decide(
 
 @compilable
 def pass_speed(ball: Ball, target: Point) -> float:
-    """Return how fast a pass to a place is kicked [m/s]."""
+    """Return the kick speed of a pass to a place [m/s]."""
     way = hypot(target[0] - ball.x, target[1] - ball.y)
     return sqrt(_ARRIVES * _ARRIVES + 2.0 * _ROLLING * way) / _KEPT
 
 
 @compiled
 def nearest_to(side: Side, lead: float, able: NDArray[np.bool_]) -> int:
-    """Return who of the team's ``able`` (R,) is nearest to where the ball is in ``lead`` seconds, or -1."""
+    """Return the team's ``able`` robot (R,) nearest to the ball in ``lead`` seconds, or -1."""
     best, who = inf, -1
-    # Who has been passed by it is not to run after it.
+    # A robot that the ball has passed should not run after it.
     x, y = side.ball.x + lead * side.ball.vx, side.ball.y + lead * side.ball.vy
     for r in range(side.first, side.last):
         far = hypot(side.robots[r].x - x, side.robots[r].y - y)
@@ -196,7 +196,7 @@ def nearest_to(side: Side, lead: float, able: NDArray[np.bool_]) -> int:
 
 @compilable
 def _coming(me: Robot, ball: Ball) -> Point:
-    """Return where to get the ball: on its way, if it comes."""
+    """Return where to get the ball: on its line if it comes."""
     fast = hypot(ball.vx, ball.vy)
     along = 0.0
     if fast > 0.3:
@@ -208,10 +208,11 @@ def _coming(me: Robot, ball: Ball) -> Point:
 def _marked(
     side: Side, contact: NDArray[np.bool_], roles: NDArray[np.int64], me: int, goal_x: float
 ) -> Point:
-    """Return where a marker stands: beside the one of the others who is its to mark, towards the ball.
+    """Return where a marker stands: beside the opponent assigned to it, towards the ball.
 
-    Those in the marker's own half, the nearest to its goal first, are each the nearest free marker's, but for
-    who has the ball; a marker that is left over stays where it is. Its goal is at ``-goal_x`` times the sign.
+    Opponents in the marker's half, except the one with the ball, are assigned to the nearest free marker,
+    starting with the nearest to the marker's goal; a marker without an opponent stays where it is. Its goal
+    is at ``-goal_x`` times the sign.
     """
     robots, ball, first, last, sign = side
     holder, near = -1, inf
@@ -244,7 +245,7 @@ def _marked(
 
 @compiled
 def _walled(field: FieldGeometry, side: Side, roles: NDArray[np.int64], me: int) -> Point:
-    """Return where one of a wall stands, round its own goal."""
+    """Return where a robot of the wall stands, round its own goal."""
     size = rank = 0
     for r in range(side.first, side.last):
         if roles[r] == Role.WALL:
@@ -256,7 +257,7 @@ def _walled(field: FieldGeometry, side: Side, roles: NDArray[np.int64], me: int)
 
 @compiled
 def shot_at(field: FieldGeometry, side: Side, me: Robot) -> tuple[Point, bool]:
-    """Return the corner farther from who is nearest to the goal, and whether the attacker is near."""
+    """Return the corner farther from the opponent nearest to the goal, and whether the attacker is near."""
     goal_x, post = side.sign * field.length / 2, field.goal_width / 2
     best, y = inf, 0.0
     for r in range(len(side.robots)):
@@ -269,7 +270,7 @@ def shot_at(field: FieldGeometry, side: Side, me: Robot) -> tuple[Point, bool]:
 
 @compiled
 def passed_to(side: Side, me: int) -> tuple[Point, bool]:
-    """Return the mate whose way from the ball is the freest, and whether it is free."""
+    """Return the team-mate with the freest lane from the ball, and whether that lane is free."""
     robots, ball, first, last, _ = side
     best, who = -1.0, -1
     for mate in range(first, last):

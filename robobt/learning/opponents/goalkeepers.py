@@ -1,7 +1,7 @@
 """The plays ``goalkeeper`` and ``fitted_goalkeeper`` over many arenas at once.
 
-Each is the play's table of conditions and what is done where they hold, with the functions of the play's
-skills; a test compares them with the trees on random frames.
+Each implements the play's table of conditions and actions, with the functions of the play's skills; a test
+compares them with the trees on random frames.
 """
 
 from __future__ import annotations
@@ -54,7 +54,7 @@ from robobt.world.state import ROBOT_RADIUS, BallState, Frame, RobotState
 
 
 class Case(IntEnum):
-    """Cases of the play, in the order in which their conditions are looked at."""
+    """Cases of the play, in the order in which their conditions are checked."""
 
     AIM = 0
     SHOT = 1
@@ -71,7 +71,7 @@ _SHARE = DEFAULT_BALL.switch_share
 
 
 class _Style(NamedTuple):
-    """What differs between the two plays.
+    """The parameters that differ between the two plays.
 
     Attributes:
         min_speed: slowest approach that counts as a shot [m/s].
@@ -120,11 +120,10 @@ _SETTING, _MEMORY = record_dtype(_Setting), record_dtype(_Memory)
 
 
 class Goalkeepers:
-    """One goalkeeper in each of ``n`` arenas; it defends the goal at +x, everybody else attacks that.
+    """One goalkeeper in each of ``n`` arenas; it defends the goal at +x, which all other robots attack.
 
-    The game is in play and the ball on the ground. A ball that rests before the goal
-    or in the defence area is the goalkeeper's: in the cases :data:`FETCH` and
-    :data:`CLEAR` it stands still, for a task to end the episode.
+    The game is in play and the ball on the ground. In the cases :data:`FETCH` and :data:`CLEAR`, for a ball
+    at rest that the goalkeeper may take, it stands still, so that a task can end the episode.
 
     Args:
         field: dimensions.
@@ -134,7 +133,7 @@ class Goalkeepers:
         speed: factor on the top speed and turning rate, one for all or (n,).
 
     Attributes:
-        cases: (n,) which case each played last.
+        cases: (n,) the last case of each.
     """
 
     style = _SHIPPED
@@ -157,7 +156,7 @@ class Goalkeepers:
         self.restart(np.arange(n), speed)
 
     def restart(self, which: NDArray[np.int64], speed: ArrayLike | None = None) -> None:
-        """Forget what was seen in the arenas ``which``; ``speed``, if given, is as for the constructor."""
+        """Forget earlier observations in the arenas ``which``; ``speed`` is as for the constructor."""
         memory = self._memory.view(_MEMORY)[:, 0]
         if speed is not None:
             factors = np.broadcast_to(np.asarray(speed, dtype=np.float64), which.shape)
@@ -200,17 +199,17 @@ class Goalkeepers:
 class FittedGoalkeepers(Goalkeepers):
     """The play ``fitted_goalkeeper`` as real shots show it.
 
-    It drives by RoboBulls' limits with the acceleration and braking given, which its robot has to be able to,
-    and stands on the line of a shot, not beside it.
+    It drives by RoboBulls' limits with the given acceleration and braking, which its robot must be capable
+    of, and stands on the line of a shot, not beside it.
 
     Args:
         field: dimensions.
         limits: what its robot can do.
         period: control period [s].
         n: number of arenas.
-        acceleration: how fast it speeds up [m/s^2].
-        braking: it drives so that it could stop at this rate [m/s^2].
-        delay: from what happens to what it does about it [s]; between two decisions, in proportion.
+        acceleration: acceleration [m/s^2].
+        braking: deceleration with which it plans to stop [m/s^2].
+        delay: reaction time [s]; between two decisions it is interpolated.
     """
 
     style = _FITTED
@@ -226,7 +225,7 @@ class FittedGoalkeepers(Goalkeepers):
         delay: float = 0.0,
     ) -> None:
         self._share = delay / period % 1.0
-        # What was decided and is not done yet, the oldest first.
+        # Decisions that are not executed yet, the oldest first.
         self._held = np.zeros((int(delay / period) + 2, n, size(COMMAND)))
         super().__init__(field, limits, period, n)
         driven = ROBOBULLS_LIMITS.model_copy(update={"acceleration": acceleration, "braking": braking})
@@ -234,7 +233,7 @@ class FittedGoalkeepers(Goalkeepers):
         self._memory.view(_MEMORY)["slowed"] = 1.0
 
     def restart(self, which: NDArray[np.int64], speed: ArrayLike | None = None) -> None:
-        """Begin anew in the arenas ``which``, with these top speeds [m/s], one for all or as many."""
+        """Reset the arenas ``which``, with these top speeds [m/s], one for all or one each."""
         if speed is not None:
             self._given.view(LIMITS)["max_speed"][which, 0] = speed
         self._forget(which)
@@ -345,7 +344,7 @@ def _case(
 
 @compiled
 def _set_out(style: _Style, setting: _Setting) -> bool:
-    """Set the trip of CoverNearPost or CoverAngle; return False where that fails."""
+    """Set the trip of CoverNearPost or CoverAngle; return False if the skill would fail."""
     trip, ball, field = setting.trip, setting.scene.ball, setting.field
     avoids = False
     if style.near_post:

@@ -1,8 +1,8 @@
 """Goalkeepers of several kinds over many arenas, for attackers to be trained against and evaluated on.
 
-Four kinds are a few lines each and differ in what they watch. Two are for evaluations: "shipped" is the play
-``goalkeeper``, "fitted" the play ``fitted_goalkeeper`` with the traits of those that the paper's real shots
-met (:mod:`robobt.learning.opponents.goalkeepers`).
+Four simple kinds differ in what they follow. Two kinds are for evaluations: "shipped" is the play
+``goalkeeper``, "fitted" the play ``fitted_goalkeeper`` with the traits of the goalkeepers in the paper's real
+shots (:mod:`robobt.learning.opponents.goalkeepers`).
 """
 
 from __future__ import annotations
@@ -33,10 +33,11 @@ if TYPE_CHECKING:
 
 
 class Kind(IntEnum):
-    """What a goalkeeper does until a shot comes, onto whose line all of them drive.
+    """A goalkeeper's behaviour until a shot comes; then all kinds drive onto its line.
 
-    ``line`` stays level with the ball, ``angle`` between ball and goal; ``aim`` does so too, but while the
-    attacker's heading leads into the goal goes where it crosses its line; ``rush`` comes out to a near ball.
+    ``line`` stays level with the ball, ``angle`` between ball and goal; ``aim`` does the same, but goes where
+    the attacker's heading crosses the goal line if that is between the posts; ``rush`` comes out to a near
+    ball.
     """
 
     LINE = 0
@@ -52,12 +53,12 @@ KINDS = tuple(kind.name.lower() for kind in Kind)
 
 
 class Keeper(Protocol):
-    """What makes a goalkeeper.
+    """The traits of a goalkeeper.
 
     Attributes:
         keeper_kind: of :class:`Kind`.
         keeper_speed: top speed [m/s].
-        keeper_out: how far before its line it stands [m], but for ``shipped`` and ``fitted``.
+        keeper_out: distance in front of the goal line [m]; not used by ``shipped`` and ``fitted``.
     """
 
     keeper_kind: float
@@ -72,15 +73,15 @@ _SHOT = 1.0
 _BESIDE = 0.1
 """How far beside the posts a shot still counts [m]."""
 _NEAR = 3.0
-"""From this distance of the ball on, ``rush`` comes out [m]."""
+"""Distance of the ball below which ``rush`` comes out [m]."""
 _FARTHEST = 0.9
-"""It comes so far, which is inside the defence area [m]."""
+"""How far it comes out, which is inside the defence area [m]."""
 _REST = 0.1
 """A ball slower than this rests [m/s]."""
 
 
 class Keepers:
-    """The robot ``index`` of each of ``n`` arenas as a goalkeeper, which minds one opponent alone.
+    """The robot ``index`` of each of ``n`` arenas as a goalkeeper, which considers one opponent only.
 
     That is the one nearest to the ball.
 
@@ -90,11 +91,11 @@ class Keepers:
         period: control period [s].
         n: number of arenas.
         index: of the robot.
-        blue: how many robots, the first, are blue, whose goal is at -x.
+        blue: number of blue robots, the first ones, whose goal is at -x.
 
     Attributes:
         index: of the robot.
-        kept: (n,) whether the ball rests where it is the goalkeeper's to fetch.
+        kept: (n,) whether the ball rests where the goalkeeper may fetch it.
     """
 
     def __init__(
@@ -111,14 +112,14 @@ class Keepers:
         self._fitted: FittedGoalkeepers | None = None
         self._new_fitted = partial(_real, field, limits, period, n)
         self._theirs = np.zeros((n, size(COMMAND)))
-        # The plays there are in any arena, and in which.
+        # The plays in use, and in which arenas.
         self._played: list[tuple[Goalkeepers, NDArray[np.bool_]]] = []
-        # Opponent and goalkeeper, the ball, and who has it, turned round to where its goal is at +x.
+        # Opponent, goalkeeper, ball and its holder, turned so that the goalkeeper's goal is at +x.
         self._pairs, self._balls = np.zeros((n, 2, ROBOT_SIZE)), np.zeros((n, size(BALL)))
         self._holds: NDArray[np.bool_] = np.zeros((n, 2), dtype=np.bool_)
 
     def restart(self, which: NDArray[np.int64], traits: FloatArray) -> None:
-        """Begin anew in the arenas ``which``, with goalkeepers of ``traits`` (m, 3), :class:`Keeper`."""
+        """Reset the arenas ``which``, with goalkeepers of ``traits`` (m, 3), :class:`Keeper`."""
         self._traits[which] = traits
         self.kept[which] = False
         kind, speed, _ = traits.T
@@ -136,7 +137,7 @@ class Keepers:
     def decide(
         self, robots: FloatArray, balls: FloatArray, contact: NDArray[np.bool_], commands: FloatArray
     ) -> None:
-        """Decide one control tick: fill its commands among those of all robots (n, R, size(COMMAND))."""
+        """Decide one control tick: fill in its commands among those of all robots (n, R, size(COMMAND))."""
         arenas, seen = (robots, balls, contact), (self._pairs, self._balls, self._holds)
         who = (self.index, self._blue)
         _decide(self._field, self._drive, self._traits, who, arenas, seen, commands, self.kept)
@@ -152,7 +153,7 @@ def _real(field: FieldGeometry, limits: RobotLimits, period: float, n: int) -> F
 
 
 def real_population() -> Population:
-    """Return the goalkeepers that the paper's real shots met.
+    """Return the goalkeepers fitted to the paper's real shots.
 
     Raises:
         MissingExtraError: the extra "shots" is not installed.
@@ -204,7 +205,7 @@ def _decide(
 
 @compilable
 def _nearest(robots: Sequence[Robot], ball: Ball, index: int, blue: int) -> int:
-    """Return which opponent of the robot ``index`` is nearest to the ball."""
+    """Return the opponent of the robot ``index`` that is nearest to the ball."""
     best, nearest = inf, 0
     for r in range(len(robots)):
         far = hypot(robots[r].x - ball.x, robots[r].y - ball.y)
@@ -221,7 +222,7 @@ def _place(keeper: Keeper, attacker: Robot, me: Robot, ball: Ball, goal_x: float
     if ball.vx > _SHOT and not _pointed_by(attacker, ball):
         crosses = ball.y + (goal_x - ball.x) * ball.vy / ball.vx
         if abs(crosses) < half_goal + _BESIDE and ball.x < goal_x:
-            # The nearest point on the shot's line, not behind the goal's.
+            # The nearest point on the shot's line, not behind the goal line.
             fast = hypot(ball.vx, ball.vy)
             ux, uy = ball.vx / fast, ball.vy / fast
             along = max((me.x - ball.x) * ux + (me.y - ball.y) * uy, 0.0)
@@ -242,6 +243,6 @@ def _place(keeper: Keeper, attacker: Robot, me: Robot, ball: Ball, goal_x: float
 
 @compiled_lean
 def _pointed_by(attacker: Robot, ball: Ball) -> bool:
-    """Return whether the attacker still drives the ball: nothing has been shot yet."""
+    """Return whether the attacker still has the ball, so that it has not shot yet."""
     near = hypot(ball.x - attacker.x, ball.y - attacker.y) < 2.0 * ROBOT_RADIUS
     return near and hypot(ball.vx - attacker.vx, ball.vy - attacker.vy) < _SHOT

@@ -1,4 +1,4 @@
-"""Robots that drive to and fro and look at nothing: what a robot on its way has to avoid."""
+"""Robots that drive back and forth and ignore all others, as moving obstacles."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ from robobt.world.limits import RobotLimits
 from robobt.world.records import ROBOT
 
 _THERE = 0.1
-"""How near an end it turns round [m]."""
+"""Distance to an end at which it turns round [m]."""
 _STUCK, _PATIENCE = 0.1, 10.0
-"""A patrol slower than this [m/s] for so many ticks is held up, and turns round."""
+"""A patrol slower than this [m/s] for this many ticks is blocked, and turns round."""
 
 
 class Patrol(Protocol):
-    """What makes a patrol: its two ends [m] and its top speed [m/s]; it drives to the second end first."""
+    """The traits of a patrol: its two ends [m] and top speed [m/s]; it drives to the second end first."""
 
     from_x: float
     from_y: float
@@ -32,7 +32,7 @@ class Patrol(Protocol):
 
 
 class _Memory(Protocol):
-    """Whether it is on its way to the second end, and for how many ticks it has been stuck."""
+    """Whether it is on its way to the second end, and for how many ticks it has been blocked."""
 
     there: float
     stuck: float
@@ -49,7 +49,7 @@ class Patrols:
         limits: what they can do.
         period: control period [s].
         n: number of arenas.
-        count: of patrols in an arena.
+        count: number of patrols in an arena.
     """
 
     def __init__(self, limits: RobotLimits, period: float, n: int, count: int) -> None:
@@ -58,7 +58,7 @@ class Patrols:
         self._memory = np.zeros((n, count, 2))
 
     def restart(self, which: NDArray[np.int64], traits: FloatArray) -> None:
-        """Begin anew in the arenas ``which``; ``traits`` (m, count, 5) are of :class:`Patrol`."""
+        """Reset the arenas ``which``; ``traits`` (m, count, 5) are of :class:`Patrol`."""
         self._traits[which] = traits
         self._memory[which] = 1.0, 0.0
 

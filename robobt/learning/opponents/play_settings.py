@@ -1,4 +1,4 @@
-"""Which play moves a robot of an arena, and with which parameters."""
+"""The play that moves a robot of an arena, and its parameters."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ class PlaySettings(Settings):
         if self.play not in PLAYS:
             raise FieldError("play", f"no play is called {self.play!r}; {unknown_name(self.play, PLAYS)}")
         try:
-            # One without parameters can be built, and takes time to: it may load a model.
+            # A play without parameters always builds, and building may take time to load a model.
             if self.params:
                 self.build_tree()
         except ParameterError as error:

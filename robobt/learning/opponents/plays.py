@@ -1,4 +1,4 @@
-"""Robots of arenas that any play moves, at its own speed: trees are ticked one by one, as in a match."""
+"""Robots of arenas moved by any play: trees are ticked one by one, as in a match."""
 
 from __future__ import annotations
 
@@ -20,14 +20,14 @@ from robobt.world.state import BallState, Frame, RobotId, RobotState
 
 
 class PlayedRobots:
-    """Robots with trees of their own in each arena; those of a team share what a team shares.
+    """Robots with their own trees in each arena; a team's robots share its store.
 
-    They see the arena's true state, as in a match without noise and delay: in open play, or as ``game``
-    tells. One whose tree fails stands still for that tick.
+    They see the arena's true state, as in a match without noise and delay, in open play or in the state that
+    ``game`` returns. A robot whose tree fails stands still for that tick.
 
     Args:
-        plays: by a robot's index what it plays.
-        blue: how many of an arena's robots, the first, are blue.
+        plays: the plays by robots' indices.
+        blue: number of an arena's blue robots, which come first.
         limits: what each robot can do.
         n: number of arenas.
         game: the state of the game in an arena, as blue sees it; None for open play.
@@ -49,7 +49,7 @@ class PlayedRobots:
         self._ticks = [0] * n
 
     def restart(self, arenas: Arenas, which: NDArray[np.int64]) -> None:
-        """Begin anew in those of the ``arenas``."""
+        """Reset these ``arenas``."""
         if not self._plays:
             return
         for arena in which.tolist():
@@ -77,7 +77,7 @@ class PlayedRobots:
             self._ticks[arena] += 1
 
     def _frame(self, arenas: Arenas, arena: int) -> Frame:
-        """Return what blue sees of an arena."""
+        """Return an arena's frame as blue sees it."""
         robots, contact = arenas.robots[arena].tolist(), arenas.contact[arena].tolist()
         (x, y, vx, vy), (z, vz, _) = arenas.balls[arena].tolist(), arenas.flight[arena].tolist()
         touch, blue = int(arenas.touch[arena]), len(self._blue)

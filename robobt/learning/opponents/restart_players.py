@@ -1,4 +1,4 @@
-"""What scripted robots of arenas do at a restart: one of the own team takes it, all others keep off."""
+"""Scripted robots at a restart: one of the team with the ball takes it, all others keep their distance."""
 
 from __future__ import annotations
 
@@ -34,12 +34,11 @@ class RestartState(Protocol):
     """An arena's restarts.
 
     Attributes:
-        team: whose the ball is, 1 blue's, -1 yellow's, 0 in play.
-        spot_x, spot_y: where it was put [m].
-        taker: who took the last restart and may not touch the ball, -1 for nobody.
-        left: ticks left to take it.
-        pause: ticks for which an opponent too near is no new fault.
-        last_team: whose the last restart was, 0 before the first.
+        team: the team of the restart: 1 blue, -1 yellow, 0 in play. spot_x, spot_y: place of the ball [m].
+        taker: robot that took the last restart and may not touch the ball, -1 for none.
+        left: ticks left to take the restart.
+        pause: ticks for which an opponent too near does not count as a new fault.
+        last_team: team of the last restart, 0 before the first.
     """
 
     team: float
@@ -55,31 +54,31 @@ RESTART = record_dtype(RestartState)
 
 _FIELD = numbers_dtype(FieldGeometry)
 _OFF = STOP_DISTANCE + ROBOT_RADIUS + 0.1
-"""From the centre to a ball that others take [m]."""
+"""Distance from the centre to a ball that others take [m]."""
 _ASIDE = ROBOT_RADIUS + BALL_RADIUS + 0.1
-"""And to one that it must not touch [m]."""
+"""Distance from the centre to a ball that the robot must not touch [m]."""
 _BEHIND, _ROUND = 0.25, 0.3
-"""From where a taker drives at the ball, and how far beside it on the way there [m]."""
+"""Run-up distance of a taker, and its distance beside the ball on the way there [m]."""
 _STRAIGHT, _AIMED = 0.03, 0.06
-"""How far off the line through ball and target it may be then [m, rad]."""
+"""Largest errors from the line through ball and target for the run-up [m, rad]."""
 _GENTLY = 0.5
-"""How fast it drives at the ball [m/s]."""
+"""Speed of the run-up [m/s]."""
 _HURRY = 6.0
-"""How fast it drives for each metre that is left [1/s]."""
+"""Speed per metre of remaining distance [1/s]."""
 
 
 class RestartPlayers:
-    """The scripted robots of ``roles`` while a restart is due, or may not be touched again by who took it.
+    """The scripted robots of ``roles`` while a restart is due, or while its kicker may not touch the ball.
 
-    Whoever of a team's field players is nearest to its own ball takes the restart, if it is one of these: it
-    drives behind the ball and kicks it, to a mate or at the goal. Others keep their distance from the ball,
-    and go on else as they did.
+    The field player nearest to its team's ball takes the restart, if it is scripted: it drives behind the
+    ball and kicks it to a team-mate or at the goal. The others keep their distance from the ball and
+    otherwise act as in play.
 
     Args:
         field: dimensions.
         limits: what they can do.
-        roles: by the robots' indices; learners and those that plays move are left alone.
-        blue: how many of an arena's robots, the first, attack towards +x.
+        roles: roles by the robots' indices; learners and robots moved by plays are left alone.
+        blue: number of an arena's robots, the first ones, that attack towards +x.
         speed: the field players' top speed [m/s].
     """
 
@@ -146,12 +145,12 @@ def _decide(
 def _keep_off(
     me: Robot, ball: Ball, keep: float, drive: tuple[float, float, float], command: Command
 ) -> None:
-    """Take from a command what would bring the robot nearer to the ball than ``keep`` [m]."""
+    """Limit a command so that the robot does not come nearer to the ball than ``keep`` [m]."""
     _, _, braking = drive
     dx, dy = me.x - ball.x, me.y - ball.y
     far = max(hypot(dx, dy), 1e-6)
     c, s = cos(me.heading), sin(me.heading)
-    # The way out in its own frame.
+    # The way out in the robot's frame.
     ux, uy = (c * dx + s * dy) / far, (c * dy - s * dx) / far
     room = far - keep
     slowest = _GENTLY if room < 0.0 else -sqrt(braking * room)
@@ -181,19 +180,19 @@ def _take(
     dx, dy = me.x - ball.x, me.y - ball.y
     along, aside = dx * ux + dy * uy, dy * ux - dx * uy
     off = wrap_angle(atan2(uy, ux) - me.heading)
-    # Along the line and beside it, how far from the ball it drives.
+    # The robot's distances from the ball, along the line and beside it.
     to_along, to_aside = -_BEHIND, 0.0
     if along < 0.0 and abs(aside) < _STRAIGHT and abs(off) < _AIMED:
         to_along, top = 0.0, _GENTLY
         command.kick_speed, command.on_contact = kick, 1.0
     elif along > -_ASIDE:
-        # Not behind it yet: away from it first, then past it.
+        # If it is not behind the ball yet, it drives away from the ball first, then past it.
         to_aside = _ROUND if aside > 0.0 else -_ROUND
         if abs(aside) < _ASIDE:
             to_along = along
     way_x = (to_along - along) * ux - (to_aside - aside) * uy
     way_y = (to_along - along) * uy + (to_aside - aside) * ux
-    # The velocity is rounded otherwise than in drive_straight, with which policies were trained.
+    # The velocity is rounded differently than in drive_straight; policies were trained with it.
     way = hypot(way_x, way_y)
     speed = min(top, stopping_speed(way, braking), _HURRY * way)
     if way > 0.0:

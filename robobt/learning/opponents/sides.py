@@ -1,4 +1,4 @@
-"""An arena as one of its teams plays in it."""
+"""An arena from the side of one of its teams."""
 
 from __future__ import annotations
 

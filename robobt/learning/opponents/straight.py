@@ -1,4 +1,4 @@
-"""How simple opponents drive: straight at a point, as fast as they may be to stop there."""
+"""Driving of simple opponents: straight at a point, as fast as they can still stop there."""
 
 from __future__ import annotations
 
@@ -13,15 +13,15 @@ from robobt.world.limits import RobotLimits
 from robobt.world.records import Robot
 
 TURN = 6.0
-"""How fast most of them turn at most [rad/s]."""
+"""Highest turning rate of most of them [rad/s]."""
 _LOOK = 6.0
-"""How fast they turn for each radian [1/s]."""
+"""Turning rate per radian of error [1/s]."""
 _CAREFUL = 0.8
 """Share of its braking that a robot relies on."""
 
 
 class Drive(Protocol):
-    """What driving depends on.
+    """Parameters of driving.
 
     Attributes:
         braking: what the robot can brake with in any direction [m/s^2].
@@ -50,11 +50,11 @@ def drive_straight(
 
     Args:
         me: the robot.
-        target: where to [m].
+        target: point to drive to [m].
         facing: the point to turn to [m].
-        top: speed at most [m/s].
-        turn: turning rate at most [rad/s].
-        drive: what else it depends on.
+        top: top speed [m/s].
+        turn: highest turning rate [rad/s].
+        drive: the other parameters.
     """
     dx, dy = target[0] - me.x, target[1] - me.y
     way = hypot(dx, dy)
@@ -67,7 +67,7 @@ def drive_straight(
 
 @compilable
 def stopping_speed(way: float, braking: float) -> float:
-    """Return the speed from which a robot surely stops within ``way``, with such ``braking`` [m/s]."""
+    """Return the speed from which a robot with this ``braking`` certainly stops within ``way`` [m/s]."""
     return sqrt(2.0 * _CAREFUL * braking * way)
 
 

@@ -1,4 +1,4 @@
-"""The arenas that a policy learns in: their worlds, and who opposes the learners there."""
+"""The arenas for training: their worlds, and the opponents of the learners."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from robobt.learning.training.setting_groups import PoolSettings
 
 
 def arenas_of(worlds: Sequence[TaskSettings], n: int, central: bool) -> VectorTask:
-    """Return arenas with ``n`` learners, a row each, shared evenly among the worlds."""
+    """Return arenas with ``n`` learners, one row each, shared evenly among the worlds."""
     if len(worlds) == 1:
         return make_rows(worlds[0], n, central)
     each = learners_of(worlds[0])
@@ -25,23 +25,23 @@ def arenas_of(worlds: Sequence[TaskSettings], n: int, central: bool) -> VectorTa
 
 
 def shares_of(count: int, parts: int) -> list[int]:
-    """Return ``count`` shared as evenly as can be."""
+    """Return ``count`` divided as evenly as possible."""
     return [(count + parts - 1 - part) // parts for part in range(parts)]
 
 
 def opposed_arenas(
     environment: TaskSettings, pool: PoolSettings, others: Others, n: int, central: bool
 ) -> VectorTask:
-    """Return arenas with ``n`` learners, a row each, of which the pool's shares play against the pool.
+    """Return arenas with ``n`` learners, one row each; the pool's shares of them play against the pool.
 
-    Where yellow has no learners nobody of the pool plays.
+    The pool is not used if yellow has no learners.
 
     Args:
-        environment: of all arenas, but for who is yellow.
+        environment: environment of all arenas, except for yellow's robots.
         pool: the shares, the scripts and the plays.
         others: plays the part of the past selves.
         n: learners.
-        central: whether what a central critic sees follows each observation.
+        central: whether the additional input of a central critic follows each observation.
     """
     if not environment.two_alike:
         return make_rows(environment, n, central)
@@ -65,7 +65,7 @@ def opposed_arenas(
 def opposed(environment: SoccerSettings, pool: PoolSettings, n: int) -> list[int]:
     """Return how many of ``n`` learners play against past selves, then against each opponent.
 
-    Shares are rounded to whole arenas, and those that come last to what is left.
+    Shares are rounded to whole arenas; the last ones get the remainder.
     """
     unit = lcm(learners_of(environment), environment.blue.count(LEARNER))
     counts: list[int] = []

@@ -1,6 +1,6 @@
 """Demonstrations: a teacher's transitions, in a Parquet file that anything can read.
 
-One row a control step, in the order of episodes and ticks:
+One row per control step, in the order of episodes and ticks:
 
 | column | type | what |
 | --- | --- | --- |
@@ -46,7 +46,7 @@ _STEP = ("observation", "action", "reward", "next_observation", "terminated", "t
 """The columns of a step."""
 
 _MEANINGS = ("action", "period", "reward", "contact")
-"""Settings that define what an action and a reward are; with others the critic would learn a wrong value."""
+"""Settings that define actions and rewards; if they differ, the critic would learn a wrong value."""
 
 
 class DemonstrationsError(RobobtError, ValueError):
@@ -83,7 +83,7 @@ class Demonstrations:
         return int((self.terminated | self.truncated).sum())
 
     def first(self, episodes: int) -> Demonstrations:
-        """Return the first so many episodes."""
+        """Return the first ``count`` episodes."""
         rows = np.searchsorted(self.episode, np.unique(self.episode)[:episodes][-1], side="right")
         parts = {item.name: getattr(self, item.name)[:rows] for item in fields(self) if item.name != "about"}
         return Demonstrations(**parts, about=self.about)
@@ -138,11 +138,11 @@ def record(
     seed: int = 0,
     on_episode: Callable[[int], None] | None = None,
 ) -> Demonstrations:
-    """Let a teacher play.
+    """Record demonstrations of a teacher. Return them.
 
     Args:
-        environment: where; its type tells the task.
-        episodes: how many, each from a start of its own.
+        environment: the environment; its type defines the task.
+        episodes: number of episodes, each from its own start.
         teacher: "skill", the hand-written one, or "script".
         seed: of the starts, the noise and the randomisation.
         on_episode: called with the number of episodes that have ended.

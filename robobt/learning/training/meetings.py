@@ -1,4 +1,4 @@
-"""Encounters of policies, scripts and plays in tasks in which both teams learn."""
+"""Matches of policies, scripts and plays in tasks in which both teams learn."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ class MeetingError(RobobtError, ValueError):
 
 @dataclass(frozen=True)
 class Contender:
-    """A policy, scripted robots of a role, or a play's robots, in the places of a team's learners."""
+    """A policy, scripted robots of a role, or a play's robots, in place of a team's learners."""
 
     name: str
     plays: Actor | Opponent
@@ -111,7 +111,7 @@ def contenders_of(folder: Path, past: int, name: str = "") -> tuple[SoccerSettin
 def encounters(
     settings: SoccerSettings, contenders: Sequence[Contender], starts: int, seed: int
 ) -> list[Encounter]:
-    """Let every two contenders meet, from starts that follow from ``seed`` and the pair.
+    """Play every pair of contenders, from starts derived from ``seed`` and the pair. Return the results.
 
     Raises:
         MeetingError: a policy has another observation than the environment.
@@ -135,7 +135,7 @@ def encounters(
 def _goals(
     settings: SoccerSettings, blue: Contender, yellow: Contender, starts: int, seed: int
 ) -> NDArray[np.int64]:
-    """Return 1 for each start from which blue scores, -1 where yellow does, else 0."""
+    """Return 1 for each start from which blue scores, -1 if yellow scores, else 0."""
     made = settings
     if not isinstance(yellow.plays, Actor):
         made = against(made, yellow.plays)

@@ -1,4 +1,4 @@
-"""What the learner must know of a task besides how to step it."""
+"""The information on a task that a learner needs, besides stepping it."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ _TRAINING = 2**62
 """Seeds of training episodes have this bit, so that none is the seed of fixed starts."""
 
 _ARENAS = 128
-"""Side by side in an evaluation."""
+"""Arenas side by side in an evaluation."""
 
 
 @dataclass(frozen=True)
@@ -39,13 +39,13 @@ class Problem:
 
     Attributes:
         make: ``n`` arenas of it.
-        evaluate: play a policy once from each of so many of a split's starts.
+        evaluate: plays a policy once from each of a number of a split's starts.
         scale: (observation,) typical size of each entry, in its unit.
         smoothed: (action,) whether target smoothing may change an entry; not a threshold.
-        state_scale: (state,) the same of what stands behind the observation, in ``make``'s arenas alone, for
-            a central critic; empty without one.
-        later: the arenas after so many steps, where others play the part of a pool; None where they are
-            always ``make``'s.
+        state_scale: (state,) typical size of the additional input of a central critic, in ``make``'s arenas
+            only; empty without one.
+        later: returns the arenas after a number of steps, for a pool or stages; None if they are always
+            ``make``'s.
         vectors: entries at which the observation's vectors begin, that to the ball first; none where the
             policy cannot be asked in the ball's frame.
     """
@@ -91,11 +91,11 @@ def problem_of(
     """Return the task in that environment.
 
     Args:
-        environment: what a policy of the task is told of.
-        held_out: where held-out starts are played, if elsewhere.
-        worlds: what training's arenas are shared among, if not that environment.
+        environment: the environment that a policy observes.
+        held_out: environment of the held-out starts, if different.
+        worlds: environments that share the training arenas, if not that environment.
         central: whether a central critic learns.
-        validated: what validation's starts are shared among, if not ``worlds``.
+        validated: environments that share the validation starts, if not ``worlds``.
     """
     task = make_task(environment, 1)
     trained = tuple(worlds) or (environment,)
@@ -114,13 +114,13 @@ def problem_of(
 
 
 def training_seed(seed: int, steps: int) -> int:
-    """Return the seed that a run's simulator is built with after so many steps."""
+    """Return the seed of a run's simulator built after this many steps."""
     drawn = int(np.random.SeedSequence([seed, steps]).generate_state(1, np.uint64)[0])
     return (drawn & (_TRAINING - 1)) | _TRAINING
 
 
 def split_seed(split: Split) -> int:
-    """Return the seed of a split's starts, their noise and randomisation; of no run's simulator."""
+    """Return the seed of a split's starts, noise and randomisation, different from every run's simulator."""
     return _SPLIT_SEEDS[split]
 
 

@@ -77,7 +77,7 @@ class CollectionSettings(Settings):
         1,
         ge=1,
         le=4096,
-        description="environments side by side; where several robots of one learn, each counts",
+        description="environments side by side; each learning robot counts as one",
     )
     random_steps: int = Field(10_000, ge=0, description="steps of uniformly random actions at the beginning")
     learning_starts: int = Field(1_000, ge=0, description="steps before the first update")
@@ -140,11 +140,11 @@ Script = Literal["challenge", "still", "press", "mark", "wall", "attack", "pass"
 
 
 class PoolSettings(Settings):
-    """Opponents of the learners in a share of the arenas; in the others the policy plays against itself.
+    """Opponents of the learners in a share of the arenas; in the other arenas the policy plays itself.
 
-    For tasks with learners on both teams. Opponents take the places of yellow's learners, so that only blue's
-    learn there. Past selves are frozen copies of the policy that act without noise; each plays in as many
-    arenas as any other.
+    For tasks with learners on both teams. Opponents replace yellow's learners, so that only blue's learn
+    there. Past selves are frozen copies of the policy that act without noise; all play in equally many
+    arenas.
     """
 
     size: int = Field(8, ge=1, le=64, description="number of past selves; the newest are kept")
@@ -159,7 +159,7 @@ class PoolSettings(Settings):
 
     @property
     def opponents(self) -> tuple[Script | PlaySettings, ...]:
-        """All opponents but the past selves."""
+        """All opponents except the past selves."""
         return (*self.scripts, *self.plays)
 
     @property

@@ -49,7 +49,7 @@ class TrainSettings(Settings):
     )
     init: str | None = Field(
         None,
-        description="folder of a finished run, whose policy training begins with, for learner ppo; its "
+        description="folder of a finished run whose policy is the start of training, for learner ppo; its "
         "observation may have fewer robots",
     )
     pool: PoolSettings = PoolSettings()

@@ -1,7 +1,7 @@
-"""Teachers for demonstrations: the hand-written skills, and scripts as simple as can be.
+"""Teachers for demonstrations: the hand-written skills, and minimal scripts.
 
-A teacher decides the actions of one task's arenas. The scripts see what a
-learned policy sees; the skills see the field, as they do in a match.
+A teacher decides the actions of one task's arenas. The scripts see a learned policy's observation; the skills
+see the field, as in a match.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from robobt.world.state import BallState, Frame, RobotState
 
 
 class TeacherError(RobobtError, ValueError):
-    """A task that no teacher can show."""
+    """A task has no teacher."""
 
 
 class Teacher(Protocol):
@@ -51,7 +51,7 @@ class SkillTeacher:
 
     def __init__(self, task: ArenaTask) -> None:
         self._task = task
-        # The tasks know no defence areas, and a skill would keep out of the opponents'.
+        # The tasks have no defence areas, and a skill would keep out of the opponents' area.
         self._field = task.settings.field.model_copy(update={"defense_depth": 0.0, "defense_width": 0.0})
         self._limits = _within(task.settings.robot_limits, task.action)
         self._runners: dict[int, tuple[TreeRunner, Store]] = {}
@@ -99,7 +99,7 @@ def playing(task: ArenaTask, teacher: Teacher) -> Callable[[FloatArray], FloatAr
     ticks = np.full(task.n, np.inf)
 
     def decide(observation: FloatArray) -> FloatArray:
-        # An episode that is no older than the one seen last is another.
+        # An episode no older than the last one seen is a new episode.
         begun = np.flatnonzero(task.ticks <= ticks)
         teacher.begin(begun)
         ticks[:] = task.ticks
@@ -140,7 +140,7 @@ TEACHERS: dict[str, Callable[[ArenaTask], Teacher]] = {"skill": skill, "script":
 
 
 def action_of(command: RobotCommand, scaling: ActionScaling) -> FloatArray:
-    """Return the action in [-1, 1] closest to a command; what it cannot express is left out."""
+    """Return the action in [-1, 1] closest to a command, without parts that it cannot express."""
     if scaling.kind == "drive":
         forward, left = command.vx / scaling.max_speed, command.vy / scaling.max_speed
         norm = max(1.0, float(np.hypot(forward, left)))

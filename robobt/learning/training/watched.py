@@ -30,9 +30,9 @@ _LOOK = 0.05
 
 
 def watched_problem(server: Server, settings: TrainSettings) -> Problem:
-    """Return the problem of a run, which shows its evaluations to a server's viewers in real time.
+    """Return the problem of a run that shows its evaluations to a server's viewers in real time.
 
-    Training waits while somebody watches; what it learns is the same.
+    Training waits while evaluations are watched; its result is the same.
     """
     problem = problem_for(settings)
     shows = _Shows(server, settings)

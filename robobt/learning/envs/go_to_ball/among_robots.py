@@ -1,4 +1,4 @@
-"""Go-To-Ball among robots that move, as Gymnasium knows it: its specification."""
+"""The specification of Go-To-Ball among moving robots, for Gymnasium."""
 
 from __future__ import annotations
 
@@ -6,15 +6,15 @@ from robobt.learning.envs.gymnasium_base import TaskEnv, TaskVectorEnv
 
 
 class GoToBallAmongRobotsEnv(TaskEnv):
-    """Go-To-Ball among robots: drive to the ball and touch nobody.
+    """Go-To-Ball among robots: drive to the ball without touching another robot.
 
-    :class:`~robobt.learning.envs.GoToBallEnv` with five other robots. What is given here are the defaults of
-    :class:`~robobt.learning.envs.GoToBallAmongRobotsSettings`, where all of it can be changed.
+    :class:`~robobt.learning.envs.GoToBallEnv` with five other robots. The values below are the defaults of
+    :class:`~robobt.learning.envs.GoToBallAmongRobotsSettings`, where all of them can be changed.
 
-    One step is a decision and holds for two control periods of 30 ms, each of 4 physics steps.
+    One step is a decision that holds for two control periods of 30 ms, each of 4 physics steps.
 
-    **The others** drive to and fro between two points, with a top speed of 0.5 to 1.5 m/s, and look at nothing.
-    One that is held up for 10 periods turns round.
+    **The others** drive back and forth between two points, with a top speed of 0.5 to 1.5 m/s, and ignore all
+    robots. A robot that is blocked for 10 periods turns round.
 
     **Observation**, float32, :data:`robobt.world.avoiding.GO_TO_BALL_AMONG_ROBOTS`; the frame is the robot's,
     x ahead and y to its left:
@@ -28,7 +28,8 @@ class GoToBallAmongRobotsEnv(TaskEnv):
     | 22 to 29 | the same for 8 ways at 0.75 m/s | s | [0, 2] |
     | 30 | the same for standing | s | [0, 2] |
 
-    A way is free until the robot and another, if that goes on as it does, are nearer than 0.08 m hull to hull.
+    A way is free until the robot and another robot with constant velocity are nearer than 0.08 m hull to
+    hull.
 
     **Action**: as for Go-To-Ball, at most 1.5 m/s and 1.395 rad/s.
 
@@ -43,17 +44,18 @@ class GoToBallAmongRobotsEnv(TaskEnv):
     | near | -0.05 (1 - gap / 0.2 m), where the nearest robot is nearer than 0.2 m |
     | time | -0.005 |
 
-    **Start**: ball and robot each anywhere inside the lines less 0.1 m, at least 2 m apart, the robot with any
-    heading, both at rest. The ends of the others' ways are anywhere there, at least 1.5 m apart; with a chance of
-    0.6 a way crosses the straight one from robot to ball. No way comes nearer to the ball than 0.4 m. They begin
-    somewhere on their ways, at their top speed, at least 1 m from the robot and 0.27 m from each other.
+    **Start**: ball and robot are anywhere at least 0.1 m inside the lines and at least 2 m apart, the robot
+    with any heading, both at rest. The ends of the others' ways are also anywhere there, at least 1.5 m
+    apart; with probability 0.6 a way crosses the straight line from robot to ball. No way comes closer to the
+    ball than 0.4 m. The others start anywhere on their ways, at top speed, at least 1 m from the robot and
+    0.27 m from each other.
 
     **End**: terminated within 0.2 m of the ball, which is success; terminated by a touch, two centres within
     0.185 m; truncated after 330 periods (9.9 s).
 
     Args:
-        settings: a :class:`~robobt.learning.envs.GoToBallAmongRobotsSettings` or the mapping that makes one, as
-            out of a YAML file.
+        settings: a :class:`~robobt.learning.envs.GoToBallAmongRobotsSettings` or a mapping of its fields, as
+            from a YAML file.
         render_mode: None or "rgb_array".
     """  # noqa: E501 - a table's row is a line
 
@@ -61,6 +63,6 @@ class GoToBallAmongRobotsEnv(TaskEnv):
 
 
 class GoToBallAmongRobotsVectorEnv(TaskVectorEnv):
-    """Many arenas of :class:`GoToBallAmongRobotsEnv`, which says what is observed, rewarded and ended."""
+    """Many arenas of :class:`GoToBallAmongRobotsEnv`, which specifies observation, reward and ends."""
 
     task_name = "go_to_ball_among_robots"

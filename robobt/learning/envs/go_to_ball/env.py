@@ -1,4 +1,4 @@
-"""Go-To-Ball as Gymnasium knows it: its specification."""
+"""The specification of Go-To-Ball, for Gymnasium."""
 
 from __future__ import annotations
 
@@ -9,10 +9,9 @@ class GoToBallEnv(TaskEnv):
     """Go-To-Ball: drive an omnidirectional robot to the ball.
 
     Source: "Machine Learning Approaches for Attacking Behaviors in Robot Soccer",
-    with the choices of the authors' published code where the paper is silent. The
-    equations of the reward are its Eqs. 7 to 9. What is given here are the
-    defaults of :class:`~robobt.learning.envs.GoToBallSettings`, where all of it
-    can be changed.
+    with the choices of the authors' published code where the paper is silent. The equations of the reward are
+    its Eqs. 7 to 9. The values below are the defaults of :class:`~robobt.learning.envs.GoToBallSettings`,
+    where all of them can be changed.
 
     One step is one control period of 30 ms, in 4 physics steps with walls, goals
     and ball contacts.
@@ -40,8 +39,7 @@ class GoToBallEnv(TaskEnv):
     The velocity is shortened to 1.5 m/s; the robot follows within its
     accelerations.
 
-    **Reward** a step, with d the distance [m] and theta the angle to the ball
-    [rad] that the step led to:
+    **Reward** per step, with d the distance [m] and theta the angle to the ball [rad] after the step:
 
     | term | value | equation |
     | --- | --- | --- |
@@ -53,15 +51,15 @@ class GoToBallEnv(TaskEnv):
     discount below 0.996 that is worth less than the contact. The undiscounted
     return rewards hovering; compare policies by success and time.
 
-    **Start**: ball and robot each anywhere inside the lines less 0.1 m, the two at
-    least 0.2 m apart, heading in [-pi, pi), all at rest.
+    **Start**: ball and robot are anywhere at least 0.1 m inside the lines and at least 0.2 m apart, with any
+    heading in [-pi, pi), at rest.
 
     **End**: terminated by contact, which is success; truncated after 330 steps
     (9.9 s).
 
     Args:
-        settings: a :class:`~robobt.learning.envs.GoToBallSettings` or the mapping
-            that makes one, as out of a YAML file.
+        settings: a :class:`~robobt.learning.envs.GoToBallSettings` or a mapping of its fields, as from a YAML
+            file.
         render_mode: None or "rgb_array".
     """
 
@@ -69,6 +67,6 @@ class GoToBallEnv(TaskEnv):
 
 
 class GoToBallVectorEnv(TaskVectorEnv):
-    """Many arenas of :class:`GoToBallEnv`, which says what is observed, rewarded and ended."""
+    """Many arenas of :class:`GoToBallEnv`, which specifies observation, reward and ends."""
 
     task_name = "go_to_ball"

@@ -1,6 +1,6 @@
-"""The reward of Go-To-Ball: what a weight is called and what it weighs.
+"""The reward of Go-To-Ball: its weights and terms.
 
-For a new term add its weight to :class:`GoToBallReward`, its name to :class:`GoToBallTerms` and the term to
+For a new term, add its weight to :class:`GoToBallReward`, its name to :class:`GoToBallTerms` and the term to
 :func:`reward`.
 """
 
@@ -18,7 +18,7 @@ from robobt.world.geometry import wrap_angle
 from robobt.world.records import Ball, Robot
 
 _NEAR = 0.2
-"""From this gap on another robot is not near [m]."""
+"""Gap from which another robot no longer counts as near [m]."""
 _BELL = 1.0 / sqrt(2.0 * pi)
 
 
@@ -34,20 +34,20 @@ class GoToBallReward(Settings):
         0.0,
         ge=0,
         le=100,
-        description="times the speed at which it closes in on its place, relative to the ball [m/s]",
+        description="times the closing speed to its target, relative to the ball [m/s]",
     )
-    time: float = Field(0.0, ge=0, le=100, description="taken off every tick")
-    touched: float = Field(0.0, ge=0, le=1e4, description="taken off where another robot is touched")
+    time: float = Field(0.0, ge=0, le=100, description="subtracted in every tick")
+    touched: float = Field(0.0, ge=0, le=1e4, description="subtracted when another robot is touched")
     near: float = Field(
         0.0,
         ge=0,
         le=100,
-        description="taken off beside another robot, less with the gap and none from 0.2 m on",
+        description="subtracted near another robot, falling linearly with the gap to 0 at 0.2 m",
     )
 
 
 class GoToBallTerms(Protocol):
-    """What each term has brought since an episode began, by the name of its weight."""
+    """Sum of each term since the episode's start, by the name of its weight."""
 
     distance: float
     orientation: float
@@ -73,15 +73,15 @@ def reward(
     """Compute the reward of a step.
 
     Args:
-        weights: of the terms.
-        robot: after the step.
-        ball: after it.
-        action: (3,) in [-1, 1], taken in it.
+        weights: weights of the terms.
+        robot: the robot after the step.
+        ball: the ball after the step.
+        action: (3,) action of the step, in [-1, 1].
         reached: whether the robot has reached the ball.
-        place: where it is to drive [m], the ball or behind it in order to shoot, and which way to face [rad].
-        gap: hull to hull of the nearest other robot, infinite without any [m].
-        touched: whether it has touched one.
-        terms: of the episode, added to.
+        place: target of the robot [m] (the ball, or behind it in order to shoot) and final heading [rad].
+        gap: distance from hull to hull of the nearest other robot [m], infinite without one.
+        touched: whether the robot has touched another one.
+        terms: sums of the episode, which are updated.
     """
     x, y, facing = place
     dx, dy = x - robot.x, y - robot.y
@@ -93,7 +93,7 @@ def reward(
     terms.orientation += towards_it
     total = near_it + towards_it
     if distance > 0.0:
-        # Relative to the ball: who pushes it along comes no closer.
+        # Relative to the ball: a robot that pushes the ball along comes no closer.
         closing = dx * (robot.vx - ball.vx) + dy * (robot.vy - ball.vy)
         closing = weights.closing * closing / distance
         terms.closing += closing

@@ -13,25 +13,28 @@ from robobt.models.actions import GO_TO_BALL_ACTION, ActionScaling
 
 
 class ContactRule(OrderedSettings):
-    """When the robot has reached the ball.
+    """The rule for having reached the ball.
 
     ``distance``: its centre is within ``distance`` of the ball's (the paper's
     Eq. 7). ``distance_facing``: also with the ball no more than ``angle`` off the
-    heading. ``infrared``: the ball lies in the mouth (the authors' code).
-    ``held``: it has lain there for ``ticks`` in a row with the dribbler on.
+    heading. ``infrared``: the ball is in the mouth (the authors' code). ``held``: it has been there for
+    ``ticks`` in a row with the dribbler on.
     """
 
     rule: Literal["distance", "distance_facing", "infrared", "held"] = "distance"
     distance: float = Field(0.2, gt=0.05, le=2, description="centre to centre [m]")
-    angle: float = Field(pi / 6, gt=0, le=pi, description="ball off the heading [rad]")
-    ticks: int = Field(3, ge=1, le=100, description="how long the ball is held [ticks]")
+    angle: float = Field(pi / 6, gt=0, le=pi, description="largest angle of the ball off the heading [rad]")
+    ticks: int = Field(3, ge=1, le=100, description="time for which the ball is held [ticks]")
     max_speed: float | None = Field(
-        None, gt=0, le=10, description="a faster robot has not reached it yet [m/s]; None for any speed"
+        None,
+        gt=0,
+        le=10,
+        description="a robot faster than this has not reached the ball yet [m/s]; None for any speed",
     )
 
 
 class GoToBallStarts(OrderedSettings):
-    """Where episodes start; None for a range takes the field inside its lines less ``inset``."""
+    """Starts of episodes; None for a range takes the field inside the lines, minus ``inset``."""
 
     inset: float = Field(0.1, ge=0, le=2, description="distance kept from the lines [m]")
     robot_x: Span | None = None
@@ -42,17 +45,19 @@ class GoToBallStarts(OrderedSettings):
     ball_x: Span | None = None
     ball_y: Span | None = None
     ball_speed: Span = Field((0.0, 0.0), description="in any direction [m/s]")
-    distance: Span = Field((0.2, 100.0), description="robot to ball, drawn again until it fits [m]")
+    distance: Span = Field(
+        (0.2, 100.0), description="distance from robot to ball; starts are drawn again until it fits [m]"
+    )
 
 
 class OthersSettings(OrderedSettings):
-    """Robots in the way that drive to and fro and look at nothing; each episode's are drawn anew."""
+    """Moving obstacles that drive back and forth and ignore other robots, drawn for each episode."""
 
-    count: int = Field(0, ge=0, le=21, description="how many there are; touching one ends the episode")
+    count: int = Field(0, ge=0, le=21, description="number of robots; touching one ends the episode")
     speed: Span = Field((0.5, 1.5), description="top speed of each [m/s]")
     way: float = Field(1.5, gt=0, le=10, description="least distance of the ends of a way [m]")
     crossing: float = Field(
-        0.6, ge=0, le=1, description="share of them whose way crosses the straight one to the ball at first"
+        0.6, ge=0, le=1, description="share of them whose way crosses the initial straight line to the ball"
     )
     from_ball: float = Field(0.4, ge=0, le=3, description="least distance of a way from the ball [m]")
     apart: float = Field(1.0, ge=0.2, le=5, description="least distance from the robot at first [m]")
@@ -72,8 +77,8 @@ class GoToBallSettings(TaskSettings):
     contact: ContactRule = ContactRule()
     to_shoot: bool = Field(
         False,
-        description="it sees the attacked goal's direction, has reached the ball only when a kick would go "
-        "in, and is rewarded for its orientation to the goal",
+        description="the robot observes the attacked goal's direction, reaches the ball only where a kick "
+        "would go in, and is rewarded for its orientation to the goal",
     )
     others: OthersSettings = OthersSettings()
     reward: GoToBallReward = GoToBallReward()
@@ -91,7 +96,7 @@ class GoToBallSettings(TaskSettings):
 
 
 class GoToBallAmongRobotsSettings(GoToBallSettings):
-    """Go-To-Ball among five robots that move and look at nothing."""
+    """Go-To-Ball among five moving robots that ignore all others."""
 
     decide_every: int = Field(2, ge=1, le=20, description="ticks for which an action holds")
     others: OthersSettings = OthersSettings(count=5)

@@ -1,4 +1,4 @@
-"""Where episodes of Go-To-Ball start."""
+"""Starts of Go-To-Ball."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from robobt.world.state import ROBOT_RADIUS
 def go_to_ball_starts(settings: GoToBallSettings, rng: np.random.Generator, count: int) -> FloatArray:
     """Draw ``count`` starts of Go-To-Ball, columns :func:`columns_of`.
 
-    Robot and ball anywhere in their ranges, drawn again until their distance fits.
+    Robot and ball are anywhere in their ranges, drawn again until their distance fits. Return the starts.
 
     Raises:
         ValueError: no start with that distance was found.
@@ -62,11 +62,11 @@ def _place_others(
     balls: RecordArray,
     patrols: RecordArray,
 ) -> None:
-    """Draw the robots in the way, somewhere between the ends of their ways.
+    """Draw the moving obstacles, each anywhere between the ends of its way.
 
     Args:
-        settings: of the task.
-        rng: decides.
+        settings: settings of the task.
+        rng: source of randomness.
         robots: (n, R), the first placed; the others' states are filled.
         balls: (n,) placed.
         patrols: (n, R - 1) filled.
@@ -82,7 +82,7 @@ def _place_others(
         for _ in range(GIVE_UP):
             begin, end = rng.uniform(-most, most, (2, len(open_), 2))
             between = me[open_] + rng.random((len(open_), 1)) * (ball[open_] - me[open_])
-            # Mirrored at a point of the robot's way, as far as the field goes.
+            # The other end is mirrored at a point of the robot's way, limited to the field.
             mirrored = np.clip(2.0 * between - begin, -most, most)
             end = np.where(crossing[open_, None], mirrored, end)
             way = end - begin
@@ -93,7 +93,7 @@ def _place_others(
             nearest = np.clip((to_ball * along).sum(1), 0.0, length)
             from_ball = np.hypot(*(to_ball - nearest[:, None] * along).T)
             apart = np.hypot(*(at - me[open_]).T) < others.apart
-            # Room between any two of them, so that nobody begins inside another.
+            # Keep space between any two robots, so that none starts inside another.
             placed = places_of(robots[open_, 1:k])
             close = np.hypot(*(placed - at[:, None]).transpose(2, 0, 1)) < 3 * ROBOT_RADIUS
             fits = (length >= others.way) & (from_ball >= others.from_ball) & ~apart & ~close.any(axis=1)
@@ -117,7 +117,7 @@ def _place_others(
 
 
 def columns_of(settings: GoToBallSettings) -> tuple[str, ...]:
-    """Return the columns of a start: robot, the others, ball, and what makes the others' ways."""
+    """Return the columns of a start: robot, the others, ball, and the ways of the others."""
     names = [f"other_{k}_{name}" for k in range(settings.others.count) for name in ROBOT_COLUMNS]
     traits = [f"other_{k}_{name}" for k in range(settings.others.count) for name in TRAITS]
     return (*ROBOT_COLUMNS, *names, *BALL_COLUMNS, *traits)

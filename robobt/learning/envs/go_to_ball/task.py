@@ -42,17 +42,17 @@ from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS
 _RULES = ("distance", "distance_facing", "infrared", "held")
 _DISTANCE, _FACING, _INFRARED = (_RULES.index(rule) for rule in _RULES[:3])
 _KICK_SPEED = 6.0
-"""Kick that is thought of when the ball is fetched in order to shoot [m/s]; that of the shipped Shoot."""
+"""Speed of the kick assumed when fetching the ball in order to shoot [m/s]; that of the shipped Shoot."""
 _FROM_POST = 0.15
-"""How far inside the posts it has to cross the line [m]."""
+"""Distance inside the posts at which that kick has to cross the line [m]."""
 TOUCHING = 2.0 * ROBOT_RADIUS + 0.005
-"""Robots whose centres are nearer touch [m]: contact is seen once a tick."""
+"""Robots whose centres are closer than this touch [m]; contact is checked once per tick."""
 
 
 class _Task(Protocol):
-    """What a tick is judged by.
+    """Parameters for judging a tick.
 
-    ``rule`` is an index in ``_RULES``, ``dribbler`` whether that is on, ``to_shoot`` whether the ball is
+    ``rule`` is an index in ``_RULES``, ``dribbler`` says whether it is on, ``to_shoot`` whether the ball is
     fetched in order to shoot.
     """
 
@@ -213,7 +213,7 @@ def _judge(task_: FloatArray, actions: FloatArray, report_: Report, ledger_: Led
 
 @compilable
 def _reached(task: _Task, robot: Robot, ball: Ball, in_mouth: bool, ticks_held: float) -> bool:
-    """Return whether the robot has reached the ball, whomever it touches."""
+    """Return whether the robot has reached the ball, whether or not it touches another robot."""
     contact = task.contact
     if task.rule in (_DISTANCE, _FACING):
         dx, dy = ball.x - robot.x, ball.y - robot.y
@@ -233,7 +233,7 @@ def _reached(task: _Task, robot: Robot, ball: Ball, in_mouth: bool, ticks_held: 
 
 @compilable
 def _place(task: _Task, robot: Robot, ball: Ball) -> tuple[float, float, float]:
-    """Return where the robot is to drive [m], and the direction in which it is to face there [rad]."""
+    """Return the robot's target [m] and its final heading [rad]."""
     if not task.to_shoot:
         return ball.x, ball.y, atan2(ball.y - robot.y, ball.x - robot.x)
     facing = atan2(-ball.y, task.field.length / 2 - ball.x)
@@ -242,7 +242,7 @@ def _place(task: _Task, robot: Robot, ball: Ball) -> tuple[float, float, float]:
 
 @compilable
 def _would_score(heading: float, ball: Ball, field: FieldGeometry) -> bool:
-    """Return whether the ball would go in, kicked now: along the heading, with its sideways velocity."""
+    """Return whether a kick now would go in, along the heading and with the ball's sideways velocity."""
     c, s = cos(heading), sin(heading)
     sideways = c * ball.vy - s * ball.vx
     vx, vy = _KICK_SPEED * c - sideways * s, _KICK_SPEED * s + sideways * c

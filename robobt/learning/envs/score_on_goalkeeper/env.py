@@ -1,4 +1,4 @@
-"""Score-On-Goalkeeper as Gymnasium knows it: its specification."""
+"""The specification of Score-On-Goalkeeper, for Gymnasium."""
 
 from __future__ import annotations
 
@@ -8,14 +8,14 @@ from robobt.learning.envs.gymnasium_base import TaskEnv, TaskVectorEnv
 class ScoreOnGoalkeeperEnv(TaskEnv):
     """Score-On-Goalkeeper: get the ball, carry it to where it can be kicked past the goalkeeper, and score.
 
-    What is given here are the defaults of
-    :class:`~robobt.learning.envs.ScoreOnGoalkeeperSettings`, where all of it can be changed.
+    The values below are the defaults of :class:`~robobt.learning.envs.ScoreOnGoalkeeperSettings`, where all
+    of them can be changed.
 
-    One step is a decision and holds for two control periods of 30 ms, each of 4 physics steps. The
+    One step is a decision that holds for two control periods of 30 ms, each of 4 physics steps. The
     dribbler is on all the time and holds the ball with limited force.
 
     **Observation**, float32, :data:`robobt.world.scoring.SCORE_ON_GOALKEEPER`; the frame is the robot's, x
-    ahead and y to its left; velocities are those over the field:
+    ahead and y to its left; velocities are relative to the field:
 
     | entry | meaning | unit |
     | --- | --- | --- |
@@ -38,13 +38,13 @@ class ScoreOnGoalkeeperEnv(TaskEnv):
     | 2 | turning rate | 6 rad/s | [-1, 1] |
     | 3 | kick where above 0, with 6 m/s, if the ball is in the mouth | - | [-1, 1] |
 
-    **Goalkeeper**: drawn anew for each episode, with a top speed of 1 to 3 m/s and a place 0.12 to 0.6 m
-    before the line, of four kinds that differ in what they watch until a shot comes: the ball, the line from
-    ball to goal, the attacker's heading, or the ball, towards which they come out
-    (:mod:`robobt.learning.opponents.keepers`). The shipped play ``goalkeeper`` is the kind ``shipped``. It
-    is not among those trained against, so that it can be evaluated on.
+    **Goalkeeper**: drawn for each episode, with a top speed of 1 to 3 m/s and a place 0.12 to 0.6 m in front
+    of the line. There are four kinds, which before a shot follow the ball, the line from ball to goal, or the
+    attacker's heading, or come out towards the ball (:mod:`robobt.learning.opponents.keepers`). The shipped
+    play ``goalkeeper`` is the kind ``shipped``. It is left out of training, so that it can be used in
+    evaluations.
 
-    **Reward** a period of 30 ms; the weights are in
+    **Reward** per period of 30 ms; the weights are in
     :class:`~robobt.learning.envs.score_on_goalkeeper.rewards.ScoreReward`:
 
     | term | value |
@@ -57,17 +57,17 @@ class ScoreOnGoalkeeperEnv(TaskEnv):
     | miss | -0.2 on a kick that will not go between the posts |
     | approach, advance, facing | what the state is worth more than the one before, but for a shot on its way: -0.5 for each metre from robot to ball, -0.6 for each from robot to goal down to 1.5 m, 0.5 (1 + cos) of the heading to the goal with the ball in the mouth |
 
-    **Start**: the attacker in the attacked half, up to 0.4 m before the defence area, more often
-    near the goal and turned towards it; in six of ten episodes with the ball in its mouth, else the ball
-    anywhere there, with up to 0.5 m/s.
+    **Start**: the attacker is in the attacked half, up to 0.4 m in front of the defence area, more often near
+    the goal and turned towards it. In six of ten episodes the ball is in its mouth; otherwise it is anywhere
+    there, at up to 0.5 m/s.
 
-    **End**: terminated by a goal, which is success; terminated by a ball over a line, one that the goalkeeper
-    has held for 8 periods or that rests where it is the goalkeeper's, and by an attacker in the defence area,
-    or partly inside with the ball; truncated after 334 periods (10 s).
+    **End**: terminated by a goal, which is success; terminated by a ball over a line, a ball that the
+    goalkeeper has held for 8 periods or that rests where the goalkeeper may take it, and by an attacker in
+    the defence area, or partly inside with the ball; truncated after 334 periods (10 s).
 
     Args:
-        settings: a :class:`~robobt.learning.envs.ScoreOnGoalkeeperSettings` or the mapping that makes
-            one, as out of a YAML file.
+        settings: a :class:`~robobt.learning.envs.ScoreOnGoalkeeperSettings` or a mapping of its fields, as
+            from a YAML file.
         render_mode: None or "rgb_array".
     """  # noqa: E501 - a table's row is a line
 
@@ -75,6 +75,6 @@ class ScoreOnGoalkeeperEnv(TaskEnv):
 
 
 class ScoreOnGoalkeeperVectorEnv(TaskVectorEnv):
-    """Many arenas of :class:`ScoreOnGoalkeeperEnv`, which says what is observed, rewarded and ended."""
+    """Many arenas of :class:`ScoreOnGoalkeeperEnv`, which specifies observation, reward and ends."""
 
     task_name = "score_on_goalkeeper"

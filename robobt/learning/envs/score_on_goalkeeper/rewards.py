@@ -1,6 +1,6 @@
-"""The reward of Score-On-Goalkeeper: what a weight is called and what it weighs.
+"""The reward of Score-On-Goalkeeper: its weights and terms.
 
-For a new term add its weight to :class:`ScoreReward`, its name to :class:`ScoreTerms` and the term to
+For a new term, add its weight to :class:`ScoreReward`, its name to :class:`ScoreTerms` and the term to
 :func:`reward` or :func:`end_reward`.
 """
 
@@ -22,23 +22,30 @@ _SLOW = 1.0
 """A shot that is slower than this is over [m/s]."""
 
 _NEAR = 1.5
-"""From here on it does not pay to get nearer to the goal [m]."""
+"""Distance to the goal below which getting nearer is not rewarded [m]."""
 _SURE = 0.3
-"""Between a shot that is surely reached and one that surely is not [m]."""
+"""Width between a shot that is certainly reached and one that certainly is not [m]."""
 
 
 class ScoreReward(Settings):
     """Weights of the reward's terms."""
 
     goal: float = Field(5.0, ge=0, le=1e3, description="on a goal")
-    lost: float = Field(0.5, ge=0, le=1e3, description="taken off where the episode ends without one")
-    time: float = Field(0.005, ge=0, le=10, description="taken off every tick")
+    lost: float = Field(0.5, ge=0, le=1e3, description="subtracted if the episode ends without a goal")
+    time: float = Field(0.005, ge=0, le=10, description="subtracted in every tick")
     aimed: float = Field(0.1, ge=0, le=100, description="on a kick that will go between the posts")
     unreached: float = Field(
-        2.0, ge=0, le=100, description="on such a kick, times how far it passes out of the goalkeeper's reach"
+        2.0,
+        ge=0,
+        le=100,
+        description="on such a kick, scaled by how far it passes out of the goalkeeper's reach",
     )
-    miss: float = Field(0.2, ge=0, le=100, description="taken off a kick that will not go between the posts")
-    approach: float = Field(0.5, ge=0, le=10, description="for each metre nearer to the ball")
+    miss: float = Field(
+        0.2, ge=0, le=100, description="subtracted for a kick that will not go between the posts"
+    )
+    approach: float = Field(
+        0.5, ge=0, le=10, description="for each metre that the robot gets nearer to the ball"
+    )
     advance: float = Field(
         0.6, ge=0, le=10, description="for each metre that the robot gets nearer to the goal"
     )
@@ -46,18 +53,16 @@ class ScoreReward(Settings):
         0.5, ge=0, le=10, description="for a ball in the mouth, times the cosine of the heading to the goal"
     )
     doubt: float = Field(
-        0.25, ge=0, le=1, description="what a kick that is just reached, or just not, counts"
+        0.25, ge=0, le=1, description="value of a kick at the limit of the goalkeeper's reach"
     )
-    reach: float = Field(
-        6.0, gt=0, le=50, description="acceleration with which the goalkeeper is thought to dive [m/s^2]"
-    )
+    reach: float = Field(6.0, gt=0, le=50, description="acceleration assumed of a diving goalkeeper [m/s^2]")
 
 
 class ScoreTerms(Protocol):
-    """What each term has brought since an episode began.
+    """Sum of each term since the episode's start.
 
-    ``kick`` is what ``aimed``, ``unreached`` and ``miss`` weigh, ``potential`` what ``approach``,
-    ``advance`` and ``facing`` do; the others have the names of their weights.
+    ``kick`` is the sum of the terms weighted by ``aimed``, ``unreached`` and ``miss``, ``potential`` of those
+    weighted by ``approach``, ``advance`` and ``facing``; the others have the names of their weights.
     """
 
     goal: float
@@ -79,19 +84,18 @@ def reward(
     progress: Progress,
     terms: ScoreTerms,
 ) -> float:
-    """Compute the reward of a tick but for how it ends the episode.
+    """Compute the reward of a tick, without the reward for the episode's end.
 
     Args:
-        weights: of the terms.
-        field: whose goal at +x is attacked.
+        weights: weights of the terms.
+        field: the field; the goal at +x is attacked.
         robot: the attacker after the tick.
-        keeper: the goalkeeper after it.
-        ball: after it.
-        held: whether the ball lies in the attacker's mouth.
-        fired: whether the attacker's kicker fired in it.
-        progress: of the episode; keeps the potential, which pays for what the state is worth more than
-            the one before.
-        terms: of the episode, added to.
+        keeper: the goalkeeper after the tick.
+        ball: the ball after the tick.
+        held: whether the ball is in the attacker's mouth.
+        fired: whether the attacker's kicker fired in the tick.
+        progress: progress of the episode; keeps the potential, whose increase is rewarded.
+        terms: sums of the episode, which are updated.
     """
     goal_x = field.length / 2
     terms.time -= weights.time
@@ -104,12 +108,12 @@ def reward(
     elif held or hypot(ball.vx, ball.vy) < _SLOW:
         progress.kick_rewarded = 0.0
     potential = -weights.approach * hypot(ball.x - robot.x, ball.y - robot.y)
-    # The robot's way, not the ball's: a ball that is kicked at nothing gets nearer to the goal too.
+    # The robot's distance counts, because an aimless kick also brings the ball nearer to the goal.
     potential -= weights.advance * max(hypot(goal_x - robot.x, robot.y), _NEAR)
     if held:
         potential += weights.facing * (1.0 + cos(atan2(-robot.y, goal_x - robot.x) - robot.heading))
     if progress.kick_rewarded > 0.0:
-        # Who shoots at the goal gives the ball away, and shall not pay for that.
+        # A robot that shoots at the goal loses the ball and must not be punished for it.
         potential = nan
     elif not isnan(progress.potential):
         gained = potential - progress.potential
@@ -121,7 +125,7 @@ def reward(
 
 @compilable
 def end_reward(weights: ScoreReward, goal: bool, lost: bool, terms: ScoreTerms) -> float:
-    """Compute what the end of an episode by a goal, or ``lost`` by another end, is worth; 0 for none."""
+    """Compute the reward for ending an episode by a goal, or as ``lost``; 0 without an end."""
     if goal:
         terms.goal += weights.goal
         return weights.goal
@@ -133,13 +137,13 @@ def end_reward(weights: ScoreReward, goal: bool, lost: bool, terms: ScoreTerms) 
 
 @compilable
 def kicked(weights: ScoreReward, field: FieldGeometry, keeper: Robot, ball: Ball) -> float:
-    """Judge a kick by where it goes, as soon as the ball has left."""
+    """Judge a kick by its direction, as soon as the ball has left."""
     goal_x, post_y = field.length / 2, field.goal_width / 2
     if ball.vx <= 0.0:
         return -weights.miss
     if abs(ball.y + (goal_x - ball.x) * ball.vy / ball.vx) > post_y - BALL_RADIUS:
         return -weights.miss
-    # Where the goalkeeper stands beside the shot's line, and how long the ball takes to get there.
+    # The goalkeeper's distance from the shot's line, and the ball's time to get there.
     fast = hypot(ball.vx, ball.vy)
     dx, dy = keeper.x - ball.x, keeper.y - ball.y
     ahead, beside = (dx * ball.vx + dy * ball.vy) / fast, abs(dy * ball.vx - dx * ball.vy) / fast

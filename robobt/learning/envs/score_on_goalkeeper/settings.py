@@ -14,17 +14,17 @@ Kind = Literal["line", "angle", "aim", "rush", "shipped", "fitted"]
 
 
 class KeeperSettings(OrderedSettings):
-    """The goalkeepers that are met; each episode's is drawn anew.
+    """The opposing goalkeepers; one is drawn for each episode.
 
-    ``shipped`` is the play ``goalkeeper``; ``fitted`` the one that was fitted to real shots, whose speed
-    and place are its own (extra "shots"); the others are in :mod:`robobt.learning.opponents.keepers`.
+    ``shipped`` is the play ``goalkeeper``; ``fitted`` is fitted to real shots, with its own speed and place
+    (extra "shots"); the others are in :mod:`robobt.learning.opponents.keepers`.
     """
 
     kinds: tuple[Kind, ...] = Field(
         ("line", "angle", "aim", "rush"), min_length=1, max_length=20, description="one of them is drawn"
     )
     speed: Span = Field((1.0, 3.0), description="top speed [m/s]")
-    out: Span = Field((0.12, 0.6), description="how far before the goal line they stand [m]")
+    out: Span = Field((0.12, 0.6), description="distance in front of the goal line [m]")
 
     @model_validator(mode="after")
     def _sensible(self) -> Self:
@@ -34,7 +34,7 @@ class KeeperSettings(OrderedSettings):
 
 
 class ScoreStarts(OrderedSettings):
-    """Where episodes start; None for a range takes the attacked half up to near the defence area."""
+    """Starts of episodes; None for a range takes the attacked half up to near the defence area."""
 
     held: float = Field(0.6, ge=0, le=1, description="share that starts with the ball in the mouth")
     robot_x: Span | None = None
@@ -45,7 +45,7 @@ class ScoreStarts(OrderedSettings):
     )
     robot_speed: Span = Field((0.0, 0.0), description="in any direction, without the ball [m/s]")
     ball_speed: Span = Field((0.0, 0.5), description="in any direction, of a free ball [m/s]")
-    keeper_y: Span = Field((-0.5, 0.5), description="where the goalkeeper is [m]")
+    keeper_y: Span = Field((-0.5, 0.5), description="y coordinate of the goalkeeper [m]")
 
 
 class ScoreOnGoalkeeperSettings(TaskSettings):
@@ -56,11 +56,11 @@ class ScoreOnGoalkeeperSettings(TaskSettings):
     decide_every: int = Field(2, ge=1, le=20, description="ticks for which an action holds")
     keepers: KeeperSettings = KeeperSettings()
     held_by_keeper: int = Field(
-        8, ge=1, le=1000, description="ticks in its mouth after which the ball is the goalkeeper's"
+        8, ge=1, le=1000, description="ticks in the goalkeeper's mouth after which the ball is lost"
     )
     saved: bool = Field(False, description="whether a ball that the goalkeeper touches is lost at once")
     dribbling: float | None = Field(
-        None, gt=0, le=20, description="longest way with the ball in the mouth, by the rules 1 [m]"
+        None, gt=0, le=20, description="longest distance with the ball in the mouth, by the rules 1 [m]"
     )
     reward: ScoreReward = ScoreReward()
     starts: ScoreStarts = ScoreStarts()

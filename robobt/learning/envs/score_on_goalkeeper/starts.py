@@ -1,4 +1,4 @@
-"""Where episodes of Score-On-Goalkeeper start."""
+"""Starts of Score-On-Goalkeeper."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ from robobt.world.geometry import wrap_angles
 from robobt.world.state import BALL_RADIUS
 
 COLUMNS = (*ROBOT_COLUMNS, *(f"keeper_{name}" for name in ROBOT_COLUMNS), *BALL_COLUMNS, *TRAITS)
-"""Columns of a start: attacker, goalkeeper, ball, and which goalkeeper it is."""
+"""Columns of a start: attacker, goalkeeper, ball, and the kind of goalkeeper."""
 
 _GAP = 3e-4
-"""Between ball and front before the dribbler takes it [m]."""
+"""Gap between ball and front before the dribbler takes the ball [m]."""
 _BEFORE_AREA = 0.4
-"""How far from the defence area they start at least [m]."""
+"""Least distance of starts from the defence area [m]."""
 _INSET = 0.3
-"""How far from the touch lines [m]."""
+"""Least distance of starts from the touch lines [m]."""
 _APART = 0.2
 """Least distance of a robot and a free ball [m]."""
 
@@ -44,7 +44,7 @@ def score_starts(settings: ScoreOnGoalkeeperSettings, rng: np.random.Generator, 
     drifting = velocities(rng, starts.robot_speed, count)
     ball_x, ball_y = rng.uniform(*x, count), rng.uniform(*y, count)
     rolling = velocities(rng, starts.ball_speed, count)
-    # A ball that lies in the robot is moved away from it.
+    # A ball inside the robot is moved away from it.
     way_x, way_y = ball_x - robot["x"], ball_y - robot["y"]
     apart = np.maximum(np.hypot(way_x, way_y), 1e-9)
     ball_x = np.where(apart < _APART, robot["x"] + way_x / apart * _APART, ball_x)

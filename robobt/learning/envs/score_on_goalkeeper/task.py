@@ -38,7 +38,7 @@ _ATTACKER, _KEEPER = 0, 1
 
 
 class _Task(Protocol):
-    """What a tick is judged by."""
+    """Parameters for judging a tick."""
 
     settings: ScoreOnGoalkeeperSettings
     field: FieldGeometry
@@ -83,7 +83,7 @@ class ScoreOnGoalkeeperTask(ArenaTask):
         far, fastest = farthest(settings), limits.max_speed * max(settings.randomisation.top_speed)
         driven = max(min(fastest, settings.action.max_speed), *starts.robot_speed) + BUMP
         turned = min(limits.max_turn, settings.action.max_turn) + driven / ROBOT_RADIUS
-        # A ball comes off a robot that drives and turns at most so much faster than it was kicked.
+        # A moving, turning robot can add at most this speed to a kicked ball.
         kicked = settings.simulator.kicker.max_speed + driven + turned * ROBOT_RADIUS + BUMP
         keeper = settings.simulator.limits.max_speed + BUMP
         return {
@@ -145,12 +145,12 @@ def _judge(task_: FloatArray, kept: BoolArray, report_: Report, ledger_: Ledger)
 
 @compilable
 def _breaks_a_rule(task: _Task, robot: Robot, ball: Ball, held: bool, episode: Progress) -> bool:
-    """Note where the ball is carried; return whether it is out, or the attacker may not do what it does."""
+    """Track the carried distance; return whether the ball is out or the attacker breaks a rule."""
     field, settings = task.field, task.settings
     half_length, half_width = field.length / 2, field.width / 2
     depth, width = field.defense_depth, field.defense_width
     lost = is_out(ball.x, ball.y, half_length, half_width) or episode.ticks_held >= settings.held_by_keeper
-    # The rules: no touching the ball in their defence area, not even partly inside.
+    # By the rules the attacker must not touch the ball while even partly inside their defence area.
     lost = lost or in_area(robot.x, robot.y, half_length, depth, width)
     lost = lost or (held and in_area(robot.x, robot.y, half_length, depth, width, ROBOT_RADIUS))
     if not held:

@@ -1,6 +1,6 @@
-"""The reward of Shoot-Towards-Goal: what a weight is called and what it weighs.
+"""The reward of Shoot-Towards-Goal: its weights and terms.
 
-For a new term add its weight to :class:`ShootReward`, its name to :class:`ShootTerms` and the term to
+For a new term, add its weight to :class:`ShootReward`, its name to :class:`ShootTerms` and the term to
 :func:`reward`.
 """
 
@@ -23,19 +23,19 @@ class ShootReward(Settings):
     """Weights of the reward's terms."""
 
     face_goal: float = Field(1.0, ge=0, le=100, description="times (alpha - beta) |v_ball|, Eq. 12")
-    inside_share: float = Field(
-        0.05, ge=0, le=1, description="Eq. 12: share that is left where alpha >= beta"
-    )
+    inside_share: float = Field(0.05, ge=0, le=1, description="Eq. 12: factor where alpha >= beta")
     kick: float = Field(10.0, ge=0, le=1e3, description="Eq. 13: once, on kicking while facing the goal")
     kick_counts: Literal["pressed", "fired"] = Field(
         "pressed",
-        description="what a kick is to Eq. 13: the first kick action, ball or not, or the kicker's firing",
+        description="the kick in Eq. 13: first kick action, even without the ball, or the kicker's firing",
     )
     waiting: float = Field(
-        0.25, ge=0, le=10, description="Eq. 13: taken off a tick before the kick or not facing the goal"
+        0.25, ge=0, le=10, description="Eq. 13: subtracted in a tick before the kick or not facing the goal"
     )
     goal: float = Field(20.0, ge=0, le=1e3, description="on a goal, instead of all other terms")
-    time: float = Field(0.0, ge=0, le=10, description="taken off every tick that does not end the episode")
+    time: float = Field(
+        0.0, ge=0, le=10, description="subtracted in every tick that does not end the episode"
+    )
 
 
 SHOOT_REWARDS: dict[str, ShootReward] = {
@@ -48,7 +48,7 @@ SHOOT_REWARDS: dict[str, ShootReward] = {
 
 
 class ShootTerms(Protocol):
-    """What each term has brought since an episode began, by the name of its weight."""
+    """Sum of each term since the episode's start, by the name of its weight."""
 
     face_goal: float
     kick: float
@@ -72,15 +72,15 @@ def reward(
     """Compute the reward of a step.
 
     Args:
-        weights: of the terms.
-        field: whose goal at +x is attacked.
-        robot: after the step.
-        ball: after it.
-        kick: whether there was a kick in it, by what counts as one.
+        weights: weights of the terms.
+        field: the field; the goal at +x is attacked.
+        robot: the robot after the step.
+        ball: the ball after the step.
+        kick: whether the step had a kick, as ``weights`` defines it.
         goal: whether a goal was scored.
         out: whether the episode ended out of play.
-        progress: of the episode; keeps whether there was a kick.
-        terms: of the episode, added to.
+        progress: progress of the episode; keeps whether there was a kick.
+        terms: sums of the episode, which are updated.
     """
     first_kick = kick and progress.kick_rewarded == 0.0
     if kick:

@@ -13,7 +13,7 @@ from robobt.models.actions import SHOOT_ACTION, ActionScaling
 
 
 class ShootStarts(OrderedSettings):
-    """Where episodes start: the robot stands with the ball in its mouth."""
+    """Starts of episodes: the robot has the ball in its mouth."""
 
     robot_x: Span | None = Field(None, description="None: 0.3 m to 0.3 m before the defence area [m]")
     robot_y: Span | None = Field(None, description="None: inside the touch lines less 0.1 m [m]")

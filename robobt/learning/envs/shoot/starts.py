@@ -1,4 +1,4 @@
-"""Where episodes of Shoot-Towards-Goal start."""
+"""Starts of Shoot-Towards-Goal."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ from robobt.world.records import BALL
 from robobt.world.state import BALL_RADIUS
 
 _GAP = 3e-4
-"""Between ball and front before the dribbler takes it [m]."""
+"""Gap between ball and front before the dribbler takes the ball [m]."""
 
 _POINTS = 17
-"""Places across the mouth at which it is tried out where the ball settles."""
+"""Number of places across the mouth for which the ball's settled position is computed."""
 
 
 def shoot_starts(settings: ShootSettings, rng: np.random.Generator, count: int) -> FloatArray:
@@ -42,7 +42,7 @@ def shoot_starts(settings: ShootSettings, rng: np.random.Generator, count: int) 
     cos, sin = np.cos(robot["heading"]), np.sin(robot["heading"])
     ball["x"] = robot["x"] + cos * dx - sin * dy
     ball["y"] = robot["y"] + sin * dx + cos * dy
-    # The ball goes round with the robot.
+    # The ball turns with the robot.
     ball["vx"] = -robot["omega"] * (ball["y"] - robot["y"])
     ball["vy"] = robot["omega"] * (ball["x"] - robot["x"])
     if starts.robot_speed != (0.0, 0.0):
@@ -76,10 +76,10 @@ def _drifts(
 
 @lru_cache(maxsize=16)
 def _held_ball(settings: ShootSettings) -> tuple[FloatArray, FloatArray]:
-    """Find where a ball put into the mouth is after the warm-up: ahead and aside of the robot's centre [m].
+    """Return the place of a ball in the mouth after the warm-up: ahead of and beside the robot's centre [m].
 
-    At rest this depends on nothing but where across the mouth it was put, so the
-    warm-up of every start is that of the same few places, evenly spread over ``ball_aside``.
+    At rest this depends only on the initial place across the mouth, so all starts use the warm-up of a few
+    places, evenly spread over ``ball_aside``.
     """
     points = np.linspace(*settings.starts.ball_aside, _POINTS)
     simulator = settings.stepped_simulator

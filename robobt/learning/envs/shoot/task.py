@@ -36,13 +36,13 @@ from robobt.world.rules import in_area, is_out
 from robobt.world.state import ROBOT_RADIUS
 
 _CAREFUL = 0.9
-"""Share of what the dribbler can hold that the script turns with."""
+"""Share of the dribbler's holding force that the script uses for turning."""
 _ROBOT_BACK_LIMIT = -0.2
 """A robot farther back than this ends an episode [m]. Source: the authors' code."""
 
 
 class _Task(Protocol):
-    """What a tick is judged by; ``firing_counts`` tells whether a kick is what the kicker fires."""
+    """Parameters for judging a tick; ``firing_counts`` says whether a kick is the kicker's firing."""
 
     settings: ShootSettings
     field: FieldGeometry
@@ -140,7 +140,7 @@ def _judge(task_: FloatArray, actions_: FloatArray, report_: Report, ledger_: Le
 
 @compilable
 def _left(task: _Task, robot: Robot, ball: Ball, episode: Progress) -> bool:
-    """Return whether robot or ball have left where the task is played."""
+    """Return whether robot or ball have left the area of the task."""
     field, settings = task.field, task.settings
     half_length, half_width = field.length / 2, field.width / 2
     out = is_out(ball.x, ball.y, half_length, half_width) or ball.x < 0.0

@@ -1,1 +1,1 @@
-"""Tasks of several robots, learned and scripted. A reward term is added in ``rewards.py``."""
+"""Tasks with several robots, learned and scripted. Add a reward term in ``rewards.py``."""

@@ -1,4 +1,4 @@
-"""How tasks of several robots go on and end, compiled over all arenas."""
+"""Compiled judging of tasks with several robots, over all arenas."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ _SCORE, _SAVE, _KEEP, _PASS, _HOLD = (AIMS.index(aim) for aim in ("score", "save
 
 
 class Stop(IntEnum):
-    """What stops play: a ball out, carried too far, a learner in the others' area, a ball touched twice."""
+    """Reasons for stopping play: ball out, carried too far, learner in the others' area, double touch."""
 
     NOTHING = 0
     OUT = 1
@@ -40,7 +40,7 @@ class Stop(IntEnum):
 
 
 class Judged(Protocol):
-    """What a tick is judged by: ``aim`` is an index in ``AIMS``; the first ``blue`` robots are blue."""
+    """Parameters for judging a tick: ``aim`` is an index in ``AIMS``; the first ``blue`` robots are blue."""
 
     settings: SoccerSettings
     field: FieldGeometry
@@ -51,14 +51,13 @@ class Judged(Protocol):
 
 
 class Mind(Protocol):
-    """What is kept of an episode.
+    """The state of an episode.
 
     Attributes:
-        last: who held the ball last, -1 for nobody.
-        taken_x, taken_y: where it came into that mouth [m]; ``taken_x`` is nan where the robot has let go.
-        left_x, left_y: where it was last in it [m].
-        blue_ticks, yellow_ticks: for how many ticks in a row each team has held it.
-        goal: 1 for blue's, -1 for yellow's, 0 for none.
+        last: index of the last robot that held the ball, -1 for none. taken_x, taken_y: where the ball came
+        into that mouth [m]; ``taken_x`` is nan once it was released. left_x, left_y: where the ball was last
+        in that mouth [m]. blue_ticks, yellow_ticks: ticks in a row for which each team has held the ball.
+        goal: 1 for a goal by blue, -1 by yellow, 0 for none.
     """
 
     last: Index
@@ -75,10 +74,11 @@ JUDGED, MIND, TERMS = record_dtype(Judged), record_dtype(Mind), record_dtype(Soc
 
 
 class Play(NamedTuple):
-    """What else judging reads and fills in ``n`` arenas with L learners.
+    """Further arrays that judging reads and fills, for ``n`` arenas with L learners.
 
-    ``fouls`` tells which team broke a rule of restarts, 1 blue, -1 yellow, 0 nobody, and ``stops`` what stops
-    play without ending the episode; where the rules have restarts they tell of any rule afterwards.
+    ``fouls`` is the team that broke a rule of restarts, 1 blue, -1 yellow, 0 none, and ``stops`` the reason
+    for stopping play without ending the episode; with restarts, judging then sets both for all other rules
+    too.
     """
 
     who: IntArray  # (L,) indices of the learners
@@ -106,7 +106,7 @@ class _Arena(NamedTuple):
 
 
 class _Course(NamedTuple):
-    """What a tick brought: a goal and a fault, 1 blue's, -1 yellow's, 0 nobody's; who has the ball."""
+    """The result of a tick: goal and fault (1 blue, -1 yellow, 0 none), and who has the ball."""
 
     goal: int
     fault: float
@@ -120,9 +120,9 @@ def judge(judged_: FloatArray, report_: Report, play_: Play, ledger_: Ledger) ->
 
     Args:
         judged_: numbers of :class:`Judged`.
-        report_: of the arenas after the tick.
-        play_: what is kept of them, changed.
-        ledger_: their episodes, changed.
+        report_: report of the arenas after the tick.
+        play_: state of the arenas, updated.
+        ledger_: bookkeeping of their episodes, updated.
     """
     judged: Judged = judged_.view(JUDGED)[0]
     arenas, play, ledger = Report(*report_), Play(*play_), Ledger(*ledger_)
@@ -158,7 +158,7 @@ def judge(judged_: FloatArray, report_: Report, play_: Play, ledger_: Ledger) ->
         lost = _has_lost(arena, play.kept[i])
         if lost:
             fault = 1.0
-        # Who ended it by that.
+        # The team that ended the episode by a fault.
         ended = fault
         if rules.restarts:
             out, ended = False, 1.0 if lost else 0.0
@@ -167,7 +167,7 @@ def judge(judged_: FloatArray, report_: Report, play_: Play, ledger_: Ledger) ->
         mean = _reward(arena, _Course(goal, fault, holder, passed), play.shares[i])
         if end_tick(ledger, i, mean, success, failed, judged.settings.time_limit):
             any_ended = True
-            # Who had nothing to do but to hold out has done it.
+            # A team whose aim is to hold out succeeds when time is up.
             if ledger.truncated[i] and judged.aim in (_SAVE, _KEEP):
                 ledger.success[i] = True
     return any_ended
@@ -183,7 +183,7 @@ def _any_learner_kicked(arena: _Arena) -> bool:
 
 @compiled_inline
 def _possession(arena: _Arena) -> tuple[int, bool, bool]:
-    """Follow the ball; return who holds it, -1 for nobody, whether it was passed, and carried too far."""
+    """Track the ball; return its holder (-1 for none), whether it was passed, and whether carried too far."""
     blue, rules, ball, mind = arena.judged.blue, arena.judged.rules, arena.ball, arena.mind
     holder = -1
     for r in range(len(arena.contact)):
@@ -194,7 +194,7 @@ def _possession(arena: _Arena) -> tuple[int, bool, bool]:
     if holder < 0:
         for r in range(len(arena.kicked)):
             if arena.kicked[r]:
-                # It had the ball, if for less than a tick.
+                # The robot had the ball, even if for less than a tick.
                 mind.last, mind.left_x, mind.left_y = r, ball.x, ball.y
                 mind.taken_x = nan
         if mind.last >= 0 and not keeps_ball(arena.robots[mind.last], ball):
@@ -216,9 +216,9 @@ def _possession(arena: _Arena) -> tuple[int, bool, bool]:
 def _fault(
     arena: _Arena, out: bool, holder: int, too_far: bool, fault: float, stop: int
 ) -> tuple[float, int]:
-    """Return who breaks a rule, 1 blue, -1 yellow, 0 nobody, and what stops play.
+    """Return the team that breaks a rule (1 blue, -1 yellow, 0 none), and the reason for stopping play.
 
-    ``fault`` and ``stop`` are those of the rules of restarts. Of several the last counts.
+    ``fault`` and ``stop`` come from the rules of restarts. If several rules are broken, the last counts.
     """
     blue, field = arena.judged.blue, arena.judged.field
     if out:
@@ -253,9 +253,9 @@ def _at_least(ticks: float, most: int | None) -> bool:
 
 @compiled_inline
 def _ends(arena: _Arena, goal: int, out: bool, ended: float, passed: bool) -> tuple[bool, bool]:
-    """Return whether the episode ends in success, by what blue aims at, and whether it ends otherwise.
+    """Return whether the episode ends in success, by blue's aim, and whether it ends without.
 
-    ``ended`` tells who ended it by a fault: 1 blue, -1 yellow, 0 nobody.
+    ``ended`` is the team that ended it by a fault: 1 blue, -1 yellow, 0 none.
     """
     aim, rules, mind = arena.judged.aim, arena.judged.rules, arena.mind
     if aim == _SAVE:
@@ -276,7 +276,7 @@ def _ends(arena: _Arena, goal: int, out: bool, ended: float, passed: bool) -> tu
 
 @compiled_inline
 def _reward(arena: _Arena, course: _Course, shares: FloatArray) -> float:
-    """Add to ``shares`` (L,) what each learner earns in a tick; return the mean."""
+    """Add each learner's reward for a tick to ``shares`` (L,); return the mean."""
     blue, weights, field, ball = arena.judged.blue, arena.judged.weights, arena.judged.field, arena.ball
     half_length, learners = field.length / 2, len(arena.who)
     blue_to_goal, yellow_to_goal = hypot(half_length - ball.x, ball.y), hypot(half_length + ball.x, ball.y)
@@ -305,7 +305,7 @@ def _reward(arena: _Arena, course: _Course, shares: FloatArray) -> float:
 
 @compiled_inline
 def _own_rewards(arena: _Arena) -> tuple[float, float]:
-    """Note what each learner's own terms bring in a tick; return their means for blue and for yellow."""
+    """Compute each learner's own terms for a tick; return their means for blue and for yellow."""
     judged, ball, robots = arena.judged, arena.ball, arena.robots
     blue, weights, part = judged.blue, judged.weights, 1.0 / max(len(arena.who), 1)
     blues = yellows = 0
@@ -332,7 +332,7 @@ def _own_rewards(arena: _Arena) -> tuple[float, float]:
 
 @compiled_inline
 def _nearest(robots: Records[Robot], me: int) -> float:
-    """Return how far the centre of the nearest other robot is [m]."""
+    """Return the distance to the centre of the nearest other robot [m]."""
     nearest = inf
     for r in range(len(robots)):
         if r != me:

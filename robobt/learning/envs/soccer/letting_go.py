@@ -1,4 +1,4 @@
-"""Learners that let go of the ball before they have carried it too far, as plays do for them."""
+"""Make learners release the ball before they carry it too far, as plays do."""
 
 from __future__ import annotations
 
@@ -24,19 +24,19 @@ def let_go(
     minds_: FloatArray,
     commands_: FloatArray,
 ) -> None:
-    """Let each learner that has carried the ball ``limit`` [m] or farther get off it.
+    """Make each learner that has carried the ball ``limit`` [m] or farther release it.
 
-    What counts is what :class:`~robobt.skills.conditions.carried_far.CarriedFar` measures, and they do as
-    :class:`~robobt.skills.ball.let_go.LetGo` does.
+    The distance is measured as in :class:`~robobt.skills.conditions.carried_far.CarriedFar`, and the release
+    works as in :class:`~robobt.skills.ball.let_go.LetGo`.
 
     Args:
-        limit: [m].
+        limit: carried distance [m].
         who: (L,) indices of the learners.
-        blue: how many robots, the first, attack towards +x.
+        blue: number of robots, the first ones, that attack towards +x.
         robots_: (n, R, size(ROBOT)) states.
         balls_: (n, size(BALL)) states.
         minds_: (n, size(MIND)) of :class:`~robobt.learning.envs.soccer.judge.Mind`.
-        commands_: (n, R, size(COMMAND)); changed.
+        commands_: (n, R, size(COMMAND)) commands, which are changed.
     """
     robots, balls = robots_.view(ROBOT)[..., 0], balls_.view(BALL)[..., 0]
     minds, commands = minds_.view(MIND)[..., 0], commands_.view(COMMAND)[..., 0]

@@ -1,4 +1,4 @@
-"""Arenas with learners on both teams in which blue's alone learn."""
+"""Arenas with learners on both teams, of which only blue's learn."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from robobt.learning.envs.per_robot import PerRobot
 from robobt.learning.envs.task import FloatArray, StepResult
 
 Others = Callable[[FloatArray], FloatArray]
-"""Who plays in the places of yellow's learners: observations (arenas, k, O) to actions (arenas, k, A)."""
+"""The policy in place of yellow's learners: observations (arenas, k, O) to actions (arenas, k, A)."""
 
 
 class OneSide:
@@ -46,7 +46,7 @@ class OneSide:
         )
 
     def _learners(self, seen: FloatArray) -> FloatArray:
-        """Keep what yellow's are going to decide on; return blue's rows."""
+        """Store the observations of yellow's learners; return blue's rows."""
         each = seen.reshape(self._rows.task.n, len(self._blue), -1)
         self._yellow = each[:, ~self._blue, : self._own]
         return each[:, self._blue].reshape(self.n, -1)

@@ -1,4 +1,4 @@
-"""Tasks of several robots as PettingZoo's parallel API knows them: an agent for each learner."""
+"""Tasks with several robots behind PettingZoo's parallel API: one agent per learner."""
 
 from __future__ import annotations
 
@@ -33,13 +33,13 @@ Info = dict[str, Any]
 class SoccerParallelEnv(ParallelEnv[str, Observation, Observation]):
     """One arena of a task with an agent for each learner, named by team and number: ``blue_0``, ``yellow_1``.
 
-    What an agent observes, does and earns is what is said of a learner in
-    :class:`~robobt.learning.envs.gymnasium_base.TaskVectorEnv`; episodes end for all of them together. The
-    last step's infos hold ``is_success``, blue's, and ``time`` [s].
+    An agent's observation, action and reward are those of a learner in
+    :class:`~robobt.learning.envs.gymnasium_base.TaskVectorEnv`; episodes end for all agents together. The
+    last step's infos hold ``is_success``, for blue, and ``time`` [s].
 
     Args:
-        task: name in :data:`~robobt.learning.tasks.TASKS`, or Gymnasium's for it.
-        settings: that task's settings, or the mapping that makes them.
+        task: name in :data:`~robobt.learning.tasks.TASKS`, or its Gymnasium id.
+        settings: that task's settings, or a mapping of their fields.
         render_mode: None or "rgb_array".
 
     Raises:
@@ -89,10 +89,10 @@ class SoccerParallelEnv(ParallelEnv[str, Observation, Observation]):
     def reset(
         self, seed: int | None = None, options: Mapping[str, Any] | None = None
     ) -> tuple[dict[str, Observation], dict[str, Info]]:
-        """Start an episode; ``seed`` fixes all that follows, ``options`` may hold a ``start`` (S,).
+        """Start an episode; ``seed`` seeds everything that follows, ``options`` may hold a ``start`` (S,).
 
         Raises:
-            ValueError: a start that is none.
+            ValueError: an invalid start.
         """
         start = (options or {}).get("start")
         if start is not None:
@@ -108,7 +108,7 @@ class SoccerParallelEnv(ParallelEnv[str, Observation, Observation]):
     def step(
         self, actions: Mapping[str, NDArray[Any]]
     ) -> tuple[dict[str, Observation], dict[str, float], dict[str, bool], dict[str, bool], dict[str, Info]]:
-        """Let one decision pass under the actions of all ``agents``.
+        """Advance one decision with the actions of all ``agents``.
 
         Raises:
             ResetNeeded: no episode has begun, or it is over.

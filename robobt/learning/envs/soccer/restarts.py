@@ -1,7 +1,7 @@
-"""The league's restarts in tasks of several robots: who has the ball, who keeps off, who may not touch it.
+"""The league's restarts in tasks with several robots: the team, the distances, and the double touch.
 
 Source: RoboCup SSL rules of 2026, chapters "Ball Leaves The Field", "Resuming The Game" and "Offenses";
-places and distances are those of the match's own referee.
+places and distances are those of the match's referee.
 """
 
 from __future__ import annotations
@@ -45,20 +45,21 @@ _KINDS = {
     Stop.TWICE: EventKind.ATTACKER_DOUBLE_TOUCHED_BALL,
 }
 _AWAY = STOP_DISTANCE + ROBOT_RADIUS
-"""From an opponent's centre to the ball of a restart [m]."""
+"""Least distance from an opponent's centre to the ball of a restart [m]."""
 _CLEAR = ROBOT_RADIUS + BALL_RADIUS + 0.05
-"""From anybody's, when the ball is put down [m]."""
+"""Least distance from any robot's centre when the ball is placed [m]."""
 _BESIDE = 2.0 * ROBOT_RADIUS + 0.01
-"""From one centre to another [m]."""
+"""Least distance between centres [m]."""
 _TURNS, _REACHES = 24, 8
-"""How many ways round the ball, and how much farther off, a place is looked for."""
+"""Number of directions round the ball, and of distances, in which a place is searched."""
 
 
 class _Rules(Protocol):
-    """What restarts go by.
+    """Parameters of restarts.
 
-    ``time`` is for how many ticks a team may wait, ``again`` after how many an opponent too near is a new
-    fault, ``double_touch`` whether touching the ball twice is one; the first ``blue`` robots are blue.
+    ``time`` is the number of ticks for taking a restart, ``again`` the ticks after which an opponent too near
+    counts as a new fault, ``double_touch`` whether a double touch is a fault; the first ``blue`` robots are
+    blue.
     """
 
     field: FieldGeometry
@@ -70,11 +71,11 @@ class _Rules(Protocol):
 
 _RULES = record_dtype(_Rules)
 _IN_PLAY = fresh(RESTART, taker=-1.0)
-"""Restarts as an episode begins."""
+"""State of restarts at the start of an episode."""
 
 
 class _Found(NamedTuple):
-    """What is kept of ``n`` arenas with R robots, and what is found out about a tick."""
+    """State of ``n`` arenas with R robots, and the results of a tick."""
 
     states: FloatArray  # (n, size(RESTART))
     fouls: FloatArray  # (n,)
@@ -85,13 +86,13 @@ class _Found(NamedTuple):
 class Restarts:
     """The restarts of ``n`` arenas.
 
-    An opponent too near to the ball of a restart is put back, at rest, and that is a fault, anew after
+    An opponent too near to the ball of a restart is moved away, at rest. That is a fault, counted again after
     :data:`AGAIN` seconds.
 
     Attributes:
         rows: (n, size(RESTART)) of :class:`~robobt.learning.opponents.restart_players.RestartState`.
-        fouls: (n,) which team broke a rule in this tick, 1 blue, -1 yellow, 0 nobody.
-        stops: (n,) what stops play after this tick, 0 for nothing.
+        fouls: (n,) the team that broke a rule in this tick: 1 blue, -1 yellow, 0 none.
+        stops: (n,) the reason for stopping play after this tick, 0 for none.
     """
 
     def __init__(self, settings: SoccerSettings, n: int) -> None:
@@ -122,10 +123,10 @@ class Restarts:
         self.rows[which] = _IN_PLAY
 
     def watch(self, arenas: Arenas, over: BoolArray) -> BoolArray:
-        """Look at a tick: fill ``fouls`` and ``stops``; return who was put back, (n, R + 1).
+        """Check a tick: fill ``fouls`` and ``stops``; return the objects that were moved, (n, R + 1).
 
         Args:
-            arenas: after it.
+            arenas: the arenas after the tick.
             over: (n,) which episodes ended earlier in this decision.
         """
         found = cast(_Found, (self.rows, self.fouls, self.stops, self._moved))
@@ -136,12 +137,12 @@ class Restarts:
         return self._moved
 
     def place(self, arenas: Arenas, which: IntArray, before: FloatArray, carried: FloatArray) -> None:
-        """Let play that is stopped in the arenas ``which`` go on: ball and robots are put there at rest.
+        """Restart play in the arenas ``which``: ball and robots are placed at rest.
 
         Args:
             arenas: the simulator.
             which: (m,) indices.
-            before: (m, 2) where their balls were a tick ago [m].
+            before: (m, 2) positions of their balls a tick ago [m].
             carried: (m, 2) where their balls came into the mouth in which they are [m].
         """
         robots, balls = arenas.robots[which], np.zeros((len(which), size(BALL)))
@@ -174,7 +175,7 @@ class Restarts:
         return RefereeEvent(0.0, _KINDS[kind], Team.BLUE if fault > 0.0 else Team.YELLOW, None, x, y)
 
     def tell(self, seen: FloatArray, which: IntArray, who: NDArray[np.int64]) -> None:
-        """Fill what the robots ``who`` of the arenas ``which`` are told in observations (m, L * size)."""
+        """Fill in the restart entries of the robots ``who``, in observations (m, L * size) of ``which``."""
         each, states = seen.reshape(len(which), len(who), -1), self.rows[which].view(RESTART)
         sides = np.where(who < self._blue, 1.0, -1.0)
         told = 1 + self._double_touch
@@ -203,7 +204,7 @@ class Restarts:
 
 @compiled_lean
 def _watch(rules_: FloatArray, report_: Report, flight_: FloatArray, over: BoolArray, found_: _Found) -> bool:
-    """See :meth:`Restarts.watch`; return whether anybody has been put back."""
+    """See :meth:`Restarts.watch`; return whether any robot was moved."""
     rules: _Rules = rules_.view(_RULES)[0]
     arenas, found = Report(*report_), _Found(*found_)
     robots, balls = arenas.robots.view(ROBOT)[..., 0], arenas.balls.view(BALL)[..., 0]
@@ -241,7 +242,7 @@ def _watch(rules_: FloatArray, report_: Report, flight_: FloatArray, over: BoolA
 
 @compiled_inline
 def _put_back(rules: _Rules, state: RestartState, robots: Records[Robot], me: int) -> bool:
-    """Put a robot back, at rest, that is too near to the others' restart; return whether it was."""
+    """Move a robot that is too near to the others' restart away, at rest; return whether it was moved."""
     robot = robots[me]
     away = hypot(robot.x - state.spot_x, robot.y - state.spot_y)
     if away >= _AWAY - POINT_TOLERANCE:
@@ -253,13 +254,13 @@ def _put_back(rules: _Rules, state: RestartState, robots: Records[Robot], me: in
 
 @compilable
 def _pushes(robot: Robot, ball: Ball, flight: Flight) -> bool:
-    """Return whether the ball lies against the robot's hull."""
+    """Return whether the ball touches the robot's hull."""
     return against_hull(ball.x - robot.x, ball.y - robot.y, robot.heading) and flight.z < ROBOT_HEIGHT
 
 
 @compiled_lean
 def _clear(rules_: FloatArray, robots_: FloatArray, team: float, x: float, y: float) -> None:
-    """Put robots (R, size(ROBOT)) out of the others' areas, and off a ball at (x, y) that is ``team``'s."""
+    """Move robots (R, size(ROBOT)) out of the others' areas, and away from ``team``'s ball at (x, y)."""
     rules: _Rules = rules_.view(_RULES)[0]
     robots, field = robots_.view(ROBOT)[..., 0], rules.field
     half_length, depth = field.length / 2, field.defense_depth
@@ -278,7 +279,7 @@ def _clear(rules_: FloatArray, robots_: FloatArray, team: float, x: float, y: fl
 
 @compiled_lean
 def _put_off(field: FieldGeometry, robots: Records[Robot], me: int, x: float, y: float, reach: float) -> None:
-    """Put a robot ``reach`` from (x, y), straight away or else as near to that as it can stand."""
+    """Move a robot to ``reach`` from (x, y), straight away or as near to that direction as it can stand."""
     half_length, half_width, robot = field.length / 2, field.width / 2, robots[me]
     straight = atan2(robot.y - y, robot.x - x)
     for step in range(_REACHES):
@@ -286,7 +287,7 @@ def _put_off(field: FieldGeometry, robots: Records[Robot], me: int, x: float, y:
         for turn in range(_TURNS):
             side = 1.0 if turn % 2 else -1.0
             angle = straight + side * ((turn + 1) // 2) * 2.0 * pi / _TURNS
-            # No nearer by a rounding error than it has to be.
+            # Rounding must not put the robot nearer than allowed.
             to_x, to_y = x + (far + 1e-6) * cos(angle), y + (far + 1e-6) * sin(angle)
             if abs(to_x) <= half_length and abs(to_y) <= half_width and _is_free(robots, me, to_x, to_y):
                 robot.x, robot.y = to_x, to_y

@@ -1,6 +1,6 @@
-"""The reward of tasks of several robots: what a weight is called and what it weighs.
+"""The reward of tasks with several robots: its weights and terms.
 
-For a new term add its weight to :class:`SoccerReward`, its name to :class:`SoccerTerms`, and the term to
+For a new term, add its weight to :class:`SoccerReward`, its name to :class:`SoccerTerms`, and the term to
 :func:`team_reward` or :func:`own_reward`.
 """
 
@@ -19,52 +19,59 @@ from robobt.world.records import Ball, Robot
 from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS
 
 _WITHIN = 0.4
-"""From here on a kick is not at a mate [m]."""
+"""Distance beside a team-mate from which a kick is not aimed at it [m]."""
 _REWARDED = 4
-"""So many shots of an episode are rewarded. If all were, shooting at the goalkeeper and fetching the ball
-could pay more than a goal, and in one seed of five did; if the first alone is, learning takes far longer."""
+"""Number of shots rewarded per episode. If all were, shooting at the goalkeeper and fetching the ball could
+earn more than a goal, and in one seed of five it did; if only the first is, learning takes far longer."""
 _BLOCKED = 0.2
-"""An opponent nearer than this to its way gets a pass [m]."""
+"""An opponent closer than this to a pass's line intercepts it [m]."""
 
 
 class SoccerReward(Settings):
-    """Weights of the reward's terms: the team's, the same for all its robots, and a robot's own."""
+    """Weights of the reward's terms: team terms, equal for all its robots, and individual terms."""
 
-    goal: float = Field(5.0, ge=0, le=1e3, description="team: on a goal, and taken off on one against it")
+    goal: float = Field(
+        5.0, ge=0, le=1e3, description="team: for a goal, and subtracted for a goal against it"
+    )
     fault: float = Field(
         1.0,
         ge=0,
         le=1e3,
-        description="team: taken off for a ball out or lost or a rule broken, which the others earn",
+        description="team: subtracted for a ball out or lost or a rule broken; the other team earns it",
     )
-    passed: float = Field(0.0, ge=0, le=1e3, description="team: on a pass that has come to a mate")
+    passed: float = Field(0.0, ge=0, le=1e3, description="team: for a pass that has reached a team-mate")
     holding: float = Field(
-        0.0, ge=0, le=10, description="team: every tick with the ball in a mouth of its own"
+        0.0, ge=0, le=10, description="team: for every tick with the ball in the mouth of one of its robots"
     )
     advance: float = Field(
-        0.3, ge=0, le=10, description="team: each metre that the ball gets nearer to the goal"
+        0.3, ge=0, le=10, description="team: for each metre that the ball gets nearer to the goal"
     )
-    time: float = Field(0.002, ge=0, le=10, description="team: taken off every tick")
-    approach: float = Field(0.3, ge=0, le=10, description="own: for each metre nearer to the ball")
+    time: float = Field(0.002, ge=0, le=10, description="team: subtracted in every tick")
+    approach: float = Field(
+        0.3, ge=0, le=10, description="own: for each metre that the robot gets nearer to the ball"
+    )
     shot: float = Field(
         0.5,
         ge=0,
         le=100,
-        description="own: on a kick that will go between the posts, its first four of an episode",
+        description="own: for a kick that will go between the posts, the first four of an episode",
     )
     sent: float = Field(
-        0.0, ge=0, le=100, description="own: on a kick at a mate, less beside it and none past an opponent"
+        0.0,
+        ge=0,
+        le=100,
+        description="own: for a kick at a team-mate, scaled by aim; 0 if an opponent blocks the lane",
     )
     crash: float = Field(
-        0.02, ge=0, le=10, description="own: taken off every tick in which it touches a robot"
+        0.02, ge=0, le=10, description="own: subtracted in every tick in which it touches a robot"
     )
     shared: float = Field(
-        0.0, ge=0, le=1, description="share of the own terms that are the team's mean instead"
+        0.0, ge=0, le=1, description="share of the own terms that is replaced by the team's mean"
     )
 
 
 class SoccerTerms(Protocol):
-    """What each term has brought since an episode began, by the name of its weight: the learners' mean."""
+    """Sum of each term since the episode's start, by the name of its weight, as the learners' mean."""
 
     goal: float
     fault: float
@@ -79,13 +86,13 @@ class SoccerTerms(Protocol):
 
 
 class Memory(Protocol):
-    """What is kept of a learner for its reward.
+    """A learner's state for its reward.
 
     Attributes:
-        to_goal: distance from the ball to the attacked goal in the tick before, nan at first [m].
-        to_ball: from its hull to the ball in that, nan at first [m].
-        shots: how many it has been rewarded for.
-        own: what its own terms brought in this tick.
+        to_goal: distance from the ball to the attacked goal in the last tick [m], nan at first.
+        to_ball: distance from its hull to the ball in the last tick [m], nan at first.
+        shots: number of rewarded shots.
+        own: its individual reward in this tick.
     """
 
     to_goal: float
@@ -109,16 +116,16 @@ def team_reward(
     terms: SoccerTerms,
     part: float,
 ) -> float:
-    """Compute the team's terms of a tick, seen from one of its robots.
+    """Compute the team terms of a tick for one of its robots.
 
     Args:
         weights: of the terms.
         goal: 1 for a goal of the team, -1 for one against it, 0 for none.
-        fault: 1 where the team ended the episode by a fault, -1 where the others did, else 0.
-        passed: whether a pass of the team has come to a mate.
-        holding: whether the ball lies in a mouth of the team.
+        fault: 1 if the team ended the episode by a fault, -1 if the others did, else 0.
+        passed: whether a pass of the team has reached a team-mate.
+        holding: whether a robot of the team has the ball in its mouth.
         ball_to_goal: distance from the ball to the attacked goal [m].
-        memory: of the robot, brought up to date.
+        memory: state of the robot, updated.
         terms: of the episode, added to.
         part: of one learner in the mean of all.
     """

@@ -1,4 +1,4 @@
-"""Settings of the tasks of several robots."""
+"""Settings of the tasks with several robots."""
 
 from __future__ import annotations
 
@@ -36,9 +36,9 @@ KEEPING = ("goalkeeper", "fitted_goalkeeper", "keeper", "team_keeper", "keeper_2
 
 
 class SoccerStarts(OrderedSettings):
-    """Where episodes start: everybody and the ball anywhere in their ranges, with any heading, at rest.
+    """Starts of episodes: robots and ball anywhere in their ranges, with any heading, at rest.
 
-    Goalkeepers stand before the middles of their goals.
+    Goalkeepers stand in front of the middle of their goals.
     """
 
     blue_x: Span = Field((-3.0, 2.5), description="[m]")
@@ -47,27 +47,31 @@ class SoccerStarts(OrderedSettings):
     ball_x: Span = Field((-2.5, 2.5), description="[m]")
     ball_speed: Span = Field((0.0, 0.5), description="in any direction, of a free ball [m/s]")
     coming: float = Field(
-        0.0, ge=0, le=1, description="share in which the ball rolls at blue's first field player, from afar"
+        0.0,
+        ge=0,
+        le=1,
+        description="share of starts in which the ball rolls towards blue's first field player, from afar",
     )
-    held: float = Field(0.0, ge=0, le=1, description="share that starts with the ball in a mouth")
+    held: float = Field(0.0, ge=0, le=1, description="share of starts with the ball in a mouth")
     holder: Literal["blue", "yellow", "either"] = Field(
-        "blue", description="whose first field player holds it then"
+        "blue", description="team whose first field player then has the ball"
     )
-    apart: float = Field(0.35, ge=0.2, le=2, description="least distance of any two, and of the ball [m]")
+    apart: float = Field(0.35, ge=0.2, le=2, description="least distance between robots, and to the ball [m]")
 
 
 class SoccerRules(Settings):
-    """What ends an episode besides a goal, the ball over a line and the time limit.
+    """Ends of an episode, besides a goal, the ball over a line and the time limit.
 
-    With ``restarts`` a ball over a line, one carried too far, a learner in the other team's area and a ball
-    touched twice end no episode: they stop play, which goes on with a restart of the league.
+    With ``restarts`` a ball over a line, a ball carried too far, a learner in the other team's area and a
+    double touch do not end an episode: they stop play, which continues with a restart of the league.
     """
 
     restarts: bool = Field(
-        False, description="a ball out and faults are followed by the league's restarts, and end nothing"
+        False,
+        description="whether a ball out and faults lead to restarts instead of ending the episode",
     )
     double_touch: bool = Field(
-        False, description="who takes a restart may not touch the ball before another robot has"
+        False, description="whether the kicker of a restart may not touch the ball before another robot has"
     )
 
     held_by: int | None = Field(
@@ -75,25 +79,25 @@ class SoccerRules(Settings):
     )
     areas: bool = Field(True, description="a learner's centre in the other team's defence area is a fault")
     dribbling: float | None = Field(
-        None, gt=0, le=20, description="longest way with the ball in one mouth, by the rules 1 [m]"
+        None, gt=0, le=20, description="longest distance with the ball in one mouth, by the rules 1 [m]"
     )
     let_go: float | None = Field(
         None,
         gt=0,
         le=20,
-        description="a learner that has carried the ball so far is made to let go of it, as in plays [m]",
+        description="carried distance after which a learner is made to release the ball, as in plays [m]",
     )
     longest_hold: int | None = Field(
-        None, ge=1, le=1000, description="most ticks in a row in blue's mouths; None for any"
+        None, ge=1, le=1000, description="most ticks in a row in blue's mouths; None for no limit"
     )
     hold: int = Field(
-        8, ge=1, le=1000, description="ticks in a mouth that count as held, for the aim to hold"
+        8, ge=1, le=1000, description="ticks in a mouth that count as held, for the aim ``hold``"
     )
-    pass_length: float = Field(0.8, ge=0.2, le=10, description="what is shorter is no pass [m]")
+    pass_length: float = Field(0.8, ge=0.2, le=10, description="least length of a pass [m]")
 
     @property
     def told(self) -> int:
-        """How many entries of an observation tell of restarts."""
+        """Number of entries of an observation on restarts."""
         return int(self.restarts) + int(self.double_touch)
 
     @model_validator(mode="after")
@@ -112,11 +116,11 @@ class SoccerSettings(TaskSettings):
     time_limit: int = Field(334, ge=1, le=100_000, description="ticks to the end of an episode")
     decide_every: int = Field(2, ge=1, le=20, description="ticks for which an action holds")
     blue: tuple[Role, ...] = Field(("learner",), min_length=1, max_length=11, description="who plays")
-    yellow: tuple[Role, ...] = Field((), max_length=11, description="who plays against them")
+    yellow: tuple[Role, ...] = Field((), max_length=11, description="the opponents of the learners")
     plays: tuple[GivenPlay, ...] = Field(
         (),
-        description="what those with the role play are moved by, in order, blue's first: a play's name, or "
-        "with parameters {play: NAME, params: {...}}",
+        description="plays of the robots with the role play, in order, blue's first: a play's name, or with "
+        "parameters {play: NAME, params: {...}}",
     )
     aim: Aim = Field(
         "score",
@@ -132,7 +136,7 @@ class SoccerSettings(TaskSettings):
 
     @property
     def roles(self) -> tuple[Role, ...]:
-        """Of all robots in an arena, blue's first."""
+        """Roles of all robots in an arena, blue's first."""
         return (*self.blue, *self.yellow)
 
     @property
@@ -161,7 +165,7 @@ class SoccerSettings(TaskSettings):
 
     @property
     def sides(self) -> tuple[int, int]:
-        """How many robots a learner's own team has and how many the other, at most."""
+        """Largest number of robots in a learner's own team and in the other team."""
         sizes = [(len(self.blue), len(self.yellow)), (len(self.yellow), len(self.blue))]
         learning = [LEARNER in self.blue, LEARNER in self.yellow]
         seen = [size for size, learns in zip(sizes, learning, strict=True) if learns] or sizes[:1]
@@ -170,7 +174,7 @@ class SoccerSettings(TaskSettings):
 
     @property
     def places(self) -> tuple[int, int]:
-        """How many mates and opponents each learner sees."""
+        """Numbers of team-mates and opponents that each learner sees."""
         own, others = self.sides
         return (
             own - 1 if self.mates is None else self.mates,

@@ -1,4 +1,4 @@
-"""Where episodes of several robots start."""
+"""Starts of tasks with several robots."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ from robobt.sim.records import RecordArray
 from robobt.world.state import BALL_RADIUS
 
 _GAP = 3e-4
-"""Between ball and front before the dribbler takes it [m]."""
+"""Gap between ball and front before the dribbler takes the ball [m]."""
 
 _ASIDE = 0.15
-"""How far beside a robot a ball that comes to it passes at most, along each axis [m]."""
+"""Largest distance beside a robot of a ball that rolls towards it, along each axis [m]."""
 
 
 def columns_of(settings: SoccerSettings) -> tuple[str, ...]:
-    """Return the columns of a start: the robots, the ball, and what each goalkeeper is, blue's first."""
+    """Return the columns of a start: robots, ball, and the kind of each goalkeeper, blue's first."""
     names = [f"blue_{k}" for k in range(len(settings.blue))]
     names += [f"yellow_{k}" for k in range(len(settings.yellow))]
     keepers = [name for name, role in zip(names, settings.roles, strict=True) if role == GOALKEEPER]
@@ -66,7 +66,7 @@ def soccer_starts(settings: SoccerSettings, rng: np.random.Generator, count: int
     coming, aside = rng.random(count) < starts.coming, rng.uniform(-_ASIDE, _ASIDE, (count, 2))
     fielders = [index for index in range(blue) if not keeping[index]]
     if starts.coming > 0.0 and fielders:
-        # Through a point beside it, as an inexact pass would be.
+        # The ball passes a point beside the robot, like an inexact pass.
         receiver, (beside_x, beside_y) = robots[:, fielders[0]], aside.T
         way_x, way_y = receiver["x"] + beside_x - ball["x"], receiver["y"] + beside_y - ball["y"]
         speed = np.hypot(ball["vx"], ball["vy"]) / np.hypot(way_x, way_y)

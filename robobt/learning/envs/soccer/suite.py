@@ -1,6 +1,6 @@
-"""The graded suite's tasks of several robots: each a mix of robots, an aim, a start and an end.
+"""The graded suite of tasks with several robots: each has its robots, aim, starts and ends.
 
-What is not said is the default of :class:`~robobt.learning.envs.soccer.settings.SoccerSettings`.
+Everything else is the default of :class:`~robobt.learning.envs.soccer.settings.SoccerSettings`.
 """
 
 from __future__ import annotations
@@ -27,11 +27,11 @@ _IN_PLAY = SoccerStarts(ball_speed=(0.0, 1.0))
 
 
 class ScoreOnGoalkeeperAndDefendersSettings(SoccerSettings):
-    """Get the ball and score past a wall of one before a goalkeeper.
+    """Get the ball and score past a one-robot wall and a goalkeeper.
 
-    All start in the attacked half; in half of the episodes the attacker has the ball. Success is a goal; a
-    ball that is out, the goalkeeper's or held by yellow for 8 periods, and an attacker in the defence area
-    end it.
+    All robots start in the attacked half; in half of the episodes the attacker has the ball. Success is a
+    goal. A ball that is out, with the goalkeeper or held by yellow for 8 periods, or an attacker in the
+    defence area, ends the episode.
     """
 
     blue: tuple[Role, ...] = (LEARNER,)
@@ -40,16 +40,16 @@ class ScoreOnGoalkeeperAndDefendersSettings(SoccerSettings):
 
 
 class ScoreOnGoalkeeperAndTwoDefendersSettings(ScoreOnGoalkeeperAndDefendersSettings):
-    """The same with a second defender, which goes for the ball at up to 2 m/s."""
+    """Like Score-On-Goalkeeper-And-Defender, with a second defender that goes for the ball at up to 2 m/s."""
 
     yellow: tuple[Role, ...] = (GOALKEEPER, "wall", "press")
 
 
 class SaveSettings(SoccerSettings):
-    """Keep goal against one who gets the ball and shoots.
+    """Keep goal against one attacker that gets the ball and shoots.
 
-    The attacker starts with the ball, 1 to 4 m before the goal. Success is every end but a goal: the ball out
-    or held by the goalkeeper for 8 periods, or 6.7 s gone by.
+    The attacker starts with the ball, 1 to 4 m in front of the goal. Success is every end except a goal: the
+    ball out, held by the goalkeeper for 8 periods, or 6.7 s over.
     """
 
     blue: tuple[Role, ...] = (LEARNER,)
@@ -64,7 +64,7 @@ class SaveSettings(SoccerSettings):
 
 
 class DuelSettings(SoccerSettings):
-    """One against one that learns too: the ball lies between them, and a goal decides."""
+    """One against one, both learning: the ball starts between them, and a goal decides."""
 
     blue: tuple[Role, ...] = (LEARNER,)
     yellow: tuple[Role, ...] = (LEARNER,)
@@ -73,17 +73,17 @@ class DuelSettings(SoccerSettings):
 
 
 class DuelWithScriptSettings(DuelSettings):
-    """One against one that fetches the ball, carries it and shoots, at up to 2 m/s."""
+    """One against a script that fetches the ball, carries it and shoots, at up to 2 m/s."""
 
     yellow: tuple[Role, ...] = ("attack",)
 
 
 class KeepawaySettings(SoccerSettings):
-    """Three keep the ball from one that presses at up to 1 m/s, for 6 s.
+    """Three robots keep the ball for 6 s from one that presses at up to 1 m/s.
 
-    It starts with the first of the three. It ends when the presser has held the ball for 8 periods, with the
-    ball over a line, and with one who has carried it farther than 1 m. Success is to have it still when time
-    is up.
+    The ball starts with the first of the three. The episode ends when the presser has held the ball for 8
+    periods, when the ball is over a line, or when a robot has carried it farther than 1 m. Success is still
+    having the ball when time is up.
     """
 
     blue: tuple[Role, ...] = (LEARNER, LEARNER, LEARNER)
@@ -99,9 +99,9 @@ class KeepawaySettings(SoccerSettings):
 
 
 class PassSettings(SoccerSettings):
-    """Pass to a mate past one that presses at up to 1 m/s.
+    """Pass to a team-mate past an opponent that presses at up to 1 m/s.
 
-    Success is the ball in the other's mouth, 0.8 m or more from where it was passed.
+    Success is the ball in the team-mate's mouth, 0.8 m or more from where it was passed.
     """
 
     blue: tuple[Role, ...] = (LEARNER, LEARNER)
@@ -117,7 +117,7 @@ class PassSettings(SoccerSettings):
 
 
 class ReceiveSettings(SoccerSettings):
-    """Take a ball that comes at 1.5 to 4 m/s past one that presses, and hold it for 8 periods."""
+    """Take a ball that comes at 1.5 to 4 m/s past an opponent that presses, and hold it for 8 periods."""
 
     blue: tuple[Role, ...] = (LEARNER,)
     yellow: tuple[Role, ...] = ("press",)
@@ -144,7 +144,7 @@ class RedirectSettings(SoccerSettings):
 
 
 class Attack3v2Settings(SoccerSettings):
-    """Three attack a goalkeeper, one who marks and one who stands in the way, for 10 s."""
+    """Three robots attack a goalkeeper, a marker and a blocker, for 10 s."""
 
     blue: tuple[Role, ...] = (LEARNER, LEARNER, LEARNER)
     yellow: tuple[Role, ...] = (GOALKEEPER, "mark", "wall")
@@ -153,7 +153,7 @@ class Attack3v2Settings(SoccerSettings):
 
 
 class Small3v3Settings(SoccerSettings):
-    """Two and a goalkeeper a side, the field players of both learning; a goal decides, within 15 s."""
+    """Two field players, who learn, and a goalkeeper per side; a goal within 15 s decides."""
 
     blue: tuple[Role, ...] = (GOALKEEPER, LEARNER, LEARNER)
     yellow: tuple[Role, ...] = (GOALKEEPER, LEARNER, LEARNER)
@@ -206,11 +206,11 @@ SCRIPTS: dict[str, Role] = {
     "pass": "pass",
     "hold": "pass",
 }
-"""Who plays in the learners' places for a script score, by the aim; ``redirect`` where none may hold long."""
+"""Scripts in the learners' place for a baseline, by aim; ``redirect`` if the ball may not be held long."""
 
 
 def scripted(settings: SoccerSettings) -> SoccerSettings:
-    """Return the ``settings`` with the script in the place of blue's learners, and attackers in yellow's."""
+    """Return the ``settings`` with the script in place of blue's learners, and attackers for yellow's."""
     own: Role = "redirect" if settings.rules.longest_hold else SCRIPTS[settings.aim]
     return against(instead(settings, own), "attack")
 

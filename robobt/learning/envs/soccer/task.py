@@ -31,9 +31,9 @@ _NEW_MEMORY = fresh(MEMORY, to_goal=np.nan, to_ball=np.nan)
 
 
 class SoccerTask(ArenaTask):
-    """Any mix of learned and scripted robots; see :mod:`robobt.learning.envs.soccer.suite` for tasks of it.
+    """Any mix of learned and scripted robots; :mod:`robobt.learning.envs.soccer.suite` has such tasks.
 
-    The observations of an arena are those of its learners one after the other, and so are the actions;
+    An arena's observations and actions are those of its learners, concatenated;
     :class:`~robobt.learning.envs.per_robot.PerRobot` has a row for each learner instead.
     """
 
@@ -106,26 +106,26 @@ class SoccerTask(ArenaTask):
     def state(self) -> FloatArray:
         """Return the arenas' true states, see :meth:`ArenaTask.state`.
 
-        Where the rules have restarts two entries follow: whose ball it is, 1 blue's, -1 yellow's, 0 in play;
-        and which robot may not touch it after its restart, -1 for none.
+        With restarts two entries follow: the team of the restart (1 blue, -1 yellow, 0 in play), and the
+        robot that may not touch the ball after its restart (-1 for none).
         """
         restarts = self._restarts.states
         told = (restarts["team"], restarts["taker"]) if self.settings.rules.restarts else ()
         return np.column_stack((super().state(), *told))
 
     def game(self, arena: int) -> GameState:
-        """Return the state of the game in an arena as a referee would tell it, in field coordinates."""
+        """Return the state of the game in an arena as a referee would send it, in field coordinates."""
         return self._restarts.game(arena)
 
     @property
     def goals(self) -> FloatArray:
-        """Who has scored in each arena, (n,): 1 blue, -1 yellow, 0 nobody; until the next episode starts."""
+        """The team that scored in each arena, (n,): 1 blue, -1 yellow, 0 none; until the next episode."""
         goals: FloatArray = self._states["goal"]
         return goals
 
     @property
     def _states(self) -> RecordArray:
-        """What is kept of the episodes, (n,) of :class:`~robobt.learning.envs.soccer.judge.Mind`."""
+        """The state of the episodes, (n,) of :class:`~robobt.learning.envs.soccer.judge.Mind`."""
         return self._minds.view(MIND)[:, 0]
 
     def advance(self, actions: FloatArray) -> StepResult:
@@ -186,7 +186,7 @@ class SoccerTask(ArenaTask):
         self._played.decide(arenas, commands)
         limit = self.settings.rules.let_go
         if limit is not None and self.learners:
-            # What they want holds for several ticks, having to let go for one.
+            # Learners' actions hold for several ticks, a forced release for one.
             commands[:, self.learners] = self._filled.reshape(self.n, len(self.learners), -1)
             let_go(limit, self._who, self.blue, arenas.robots, arenas.balls, self._minds, commands)
 
@@ -208,13 +208,13 @@ class SoccerTask(ArenaTask):
         return ended
 
     def _go_on(self, which: IntArray, before: FloatArray) -> None:
-        """Let play go on with a restart where it has been stopped; balls were at ``before`` (n, 2) [m]."""
+        """Continue stopped play with a restart; balls were at ``before`` (n, 2) [m]."""
         if len(which) == 0:
             return
         restarts, minds = self._restarts.states, self._states
         carried = np.column_stack((minds["taken_x"], minds["taken_y"]))
         self._restarts.place(self.arenas, which, before[which], carried[which])
-        # Nobody has had this ball yet, and nobody has brought it nearer to a goal.
+        # No robot has had this ball yet or has brought it nearer to a goal.
         minds["last"][which] = -1
         minds["blue_ticks"][which] = minds["yellow_ticks"][which] = 0.0
         memories = self._memories.view(MEMORY)
@@ -227,5 +227,5 @@ class SoccerTask(ArenaTask):
             self._restarts.tell(seen, which, self._who)
 
     def _optimum(self, starts: FloatArray, which: IntArray) -> FloatArray:  # noqa: ARG002
-        # Nobody knows the shortest way past a team.
+        # The shortest way past a team is unknown.
         return np.full(len(which), np.nan)
