@@ -1,4 +1,4 @@
-"""Who commands which robots, within this process and on this machine: a robot obeys whoever sent last."""
+"""Claims of robots within this process and on this machine: a robot obeys the last sender."""
 
 from __future__ import annotations
 
@@ -13,13 +13,12 @@ from robobt.world.state import RobotId
 class Claims:
     """The robots that one world of this process commands.
 
-    Whoever commanded one of them in this process before is released first. Other processes of this machine
-    are found by the names of sockets in its network, which the kernel frees with a process; programs other
-    than this one make no claims.
+    An earlier claim of the same robots in this process is released first. Other processes of this machine are
+    found by the names of network sockets, which the kernel frees with a process; programs other than robobt
+    make no claims.
 
-    ``where`` is the field, as everybody calls it who plays there; None for ``robots`` are all of the
-    ``teams``, whoever they are. ``release`` gives them up; ``taken`` are robots that another process
-    commands.
+    ``where`` is the common name of the field; ``robots`` is None for all robots of the ``teams``. ``release``
+    gives them up; ``taken`` are robots that another process commands.
     """
 
     def __init__(
@@ -42,7 +41,7 @@ class Claims:
             self._name(robot)
 
     def message(self) -> str:
-        """Return what to tell the user of the robots that are taken."""
+        """Return the warning about taken robots."""
         listed = ", ".join(map(str, self.taken))
         return (
             f"another process commands the same robots there: {listed}; they obey whoever sent last. End one "
@@ -50,7 +49,7 @@ class Claims:
         )
 
     def close(self) -> None:
-        """Let others command these robots."""
+        """Release these robots for others."""
         _held.discard(self)
         for name in self._names:
             name.close()
@@ -65,7 +64,7 @@ class Claims:
 
     def _name(self, robot: RobotId) -> None:
         if sys.platform != "linux":
-            # Only there does a socket's name need no file, which might be left behind.
+            # Only on Linux does a socket's name need no file, which might be left behind.
             return
         name = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM)
         try:

@@ -17,7 +17,7 @@ from robobt.world.game import Team
 
 
 class LeagueError(RobobtError, RuntimeError):
-    """The field does not respond as it should; the message is one line."""
+    """The field does not respond as expected; the message is one line."""
 
 
 class Connection(Settings):
@@ -38,19 +38,20 @@ class Connection(Settings):
     )
     source: Literal["vision", "tracker"] = Field("vision", description="cameras, or a vision filter's frames")
     teams: tuple[Team, ...] = Field(
-        (Team.BLUE, Team.YELLOW), description="teams whose robots are commanded, whatever the trees decide"
+        (Team.BLUE, Team.YELLOW),
+        description="teams whose robots are commanded; other trees' decisions are ignored",
     )
     blue_on_positive_half: bool | None = Field(
         None, description="whether blue defends +x there; none: as the game controller says, else no"
     )
     follow_referee: bool = Field(False, description="whether to follow a game controller")
     ends: bool = Field(
-        False, description="whether the scenario's ends hold although a game controller is followed"
+        False, description="whether the scenario's ends apply although a game controller is followed"
     )
     place: bool | None = Field(
         None,
-        description="whether robots and ball are put in their places; none: where both teams are commanded "
-        "and the robots' host is this machine",
+        description="whether robots and ball are placed; none: if both teams are commanded and the robots' "
+        "host is this machine",
     )
     latency: float = Field(
         0.0, ge=0, le=0.5, description="latency of the vision beyond what its timestamps show [s]"
@@ -59,7 +60,7 @@ class Connection(Settings):
 
     @property
     def places(self) -> bool:
-        """Whether robots and ball are put in their places: never on a field that people stand on."""
+        """Whether robots and ball are placed: never on a field with people."""
         if self.place is not None:
             return self.place and self.simulator != "observer"
         local = IPv4Address(self.host).is_loopback or self.host == self.interface
@@ -67,7 +68,7 @@ class Connection(Settings):
 
     @property
     def where(self) -> str:
-        """The name of the field that is commanded; that of its ports."""
+        """The name of the commanded field, from its ports."""
         ports = self.endpoints
         return f"{self.host}:{ports.grsim}/{ports.blue}/{ports.yellow}"
 

@@ -21,7 +21,7 @@ SCHEME = "league://"
 
 _OPTIONS = [name for name in Connection.model_fields if name not in ("simulator", "endpoints")]
 _PHYSICS = {"grsim": "grsim"}
-"""Presets of simulators that are one program: what robots there can do, whatever the scenario's can."""
+"""Presets for simulators with fixed robots: these limits replace the scenario's."""
 
 _KNOWN = [*_OPTIONS, "physics", *Endpoints.model_fields]
 
@@ -80,7 +80,7 @@ class LeagueFactory:
             in place of its own if one is given.
 
     Attributes:
-        address: as given; results that are kept name it.
+        address: the address as given, which is stored with results.
     """
 
     def __init__(self, address: str, settings: Callable[[Scenario, str | None], SimSettings]) -> None:

@@ -33,16 +33,16 @@ _HORIZON = 0.25
 """Longest prediction beyond the last capture [s]."""
 
 _SIZES = ("length", "width", "goal_width", "defense_width", "defense_depth")
-"""Dimensions that have to be the scenario's."""
+"""Dimensions that have to match the scenario's."""
 
 _EQUAL = 0.02
 """Sizes closer than this are equal [m]."""
 
 _UNEQUAL = 0.05
-"""A first guess of the rate that was off by this share has spoiled the cameras' offsets."""
+"""Relative error of the initial rate from which the cameras' offsets are wrong."""
 
 _MAX_READING = 0.004
-"""How long useless packets are read at a time: a flood must not delay the commands [s]."""
+"""Longest time for reading useless packets at once, so that a flood does not delay the commands [s]."""
 
 
 class Feed:
@@ -50,7 +50,7 @@ class Feed:
 
     Args:
         connection: how the field is reached.
-        field: dimensions that the vision's have to equal; None takes whatever it reports.
+        field: dimensions that the vision has to report; None accepts any.
         settings: physics to expect there.
         limits: of individual robots, where they differ.
         clock: monotonic seconds.
@@ -59,11 +59,11 @@ class Feed:
     Attributes:
         filter: the estimate, in world coordinates.
         frames: how many camera frames were used.
-        fresh: whether one was used since this was last set to False.
+        fresh: whether a frame was used since this was last set to False.
         arrived: when the newest of them arrived, as by :meth:`now` [s].
         heard: when a frame was last used, as by :meth:`now` [s].
-        known: what is known of the field beyond this world.
-        picture: whether what is seen answers to the commands.
+        known: knowledge of the field that is kept between worlds.
+        picture: the check that robots move as commanded.
         referee: the game controller's state, None without one.
     """
 
@@ -107,7 +107,7 @@ class Feed:
         self._opened.close()
 
     def counts(self) -> dict[str, PacketCounts]:
-        """Return what happened to the packets, by port."""
+        """Return the packet counts, by port."""
         counts: dict[str, PacketCounts] = {self.connection.source: self._vision.counts}
         if self.referee is not None:
             counts |= {"referee_port": self._sources[1].counts, "referee": self.referee.counts}
@@ -165,7 +165,7 @@ class Feed:
         return self.now() - self.arrived >= ALL_CAMERAS * self.rate
 
     def no_frames(self, seconds: float) -> str:
-        """Return the error message for a field that was silent for so long."""
+        """Return the error message for a field that was silent for this time."""
         dropped = self._vision.counts.dropped
         heard = f" ({dropped} packets were dropped)" if dropped else ""
         return f"no {self.connection.source} at {self._source} for {seconds:g} s{heard}: start the simulator"
@@ -185,7 +185,7 @@ class Feed:
                 frames.append(frame)
             elif self._clock() > end:
                 break
-        # When those arrived that waited is not known: a camera's newest frame alone tells of the clock.
+        # Arrival times of waiting packets are unknown, so only a camera's newest frame is used for the clock.
         newest = {frame.camera: frame for frame in frames} if read < BATCH else {}
         for frame in frames:
             self.add(frame, arrived, waited=frame is not newest.get(frame.camera))
@@ -263,7 +263,7 @@ class Feed:
         self.known.watch(arrived)
 
     def _read(self, packet: Packet, arrived: float) -> CameraFrame | None:
-        """Return the frame in a packet of somebody who is followed, and take in the geometry."""
+        """Return the frame in a packet of a followed sender, and take in the geometry."""
         seen = self._reader.read(packet, arrived, self.filter.field, self._places)
         if seen is None:
             return None

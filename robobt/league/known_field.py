@@ -1,4 +1,4 @@
-"""What one world of a field leaves to the next: how its clock runs, and what the user has been told."""
+"""Knowledge of a field that is kept between worlds: its clock's rate, and the warnings given."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ from robobt.world.field import FieldGeometry
 _log = logging.getLogger(__name__)
 
 _BASELINE = 5.0
-"""Over how long a rate is measured before it is told [s]."""
+"""Time over which a rate is measured before it is reported [s]."""
 
 _NOTABLE, _SLOW = 0.01, 0.9
-"""A rate that is off by this share is told; one below this share of the expected is a slow field."""
+"""Deviation from which a rate is reported, and share of the expected rate below which a field is slow."""
 
 
 class KnownField(Notices):
-    """What is known of a field from one match to the next.
+    """Knowledge of a field from one match to the next.
 
     ``speed`` is the rate that its clock is expected to have [s of the field per s].
     """
@@ -40,7 +40,7 @@ class KnownField(Notices):
         self._since = None
 
     def watch(self, now: float) -> None:
-        """Tell of a rate that is not the expected one; ``now`` is on this machine's clock [s]."""
+        """Report an unexpected rate; ``now`` is on this machine's clock [s]."""
         there = self.clock.at(now)
         if there is None or not self.clock.settled:
             return

@@ -38,7 +38,7 @@ class Pace:
         """Record an act; ``frame`` is when the newest frame since the act before arrived, if one did [s]."""
         due = self._beat + self.period
         if now > due + 4.0 * self.period:
-            # This process was held up; catching up would help nobody.
+            # This process was delayed; catching up would not help.
             due = now
         elif frame is not None:
             # Towards the frames' phase, whichever way is shorter.

@@ -1,4 +1,4 @@
-"""Whether the cameras' picture answers to the commands: robots that nobody sees move are not driven on.
+"""Checks that robots visibly move as commanded; robots that do not are stopped.
 
 No sockets and no clock: all times are arguments, on the field's clock.
 """
@@ -16,25 +16,25 @@ from robobt.world.geometry import wrap_angle
 from robobt.world.state import RobotId
 
 _BLIND = 0.2
-"""Without any of the commanded robots in a frame for this long, all are told to stand [s]."""
+"""Time without any commanded robot in a frame after which all are commanded to stop [s]."""
 
 _PATIENCE = 0.35
-"""A robot that is commanded to move, with nothing seen to move, is told to stand after this time [s]."""
+"""Time after which a robot commanded to move is stopped if nothing is seen to move [s]."""
 
 _DUEL = 2.0
-"""The same where others move: then the picture is likely live, and the robot in a duel for the ball [s]."""
+"""That time while others move: vision is then probably live, and the robot blocked in a duel [s]."""
 
 _COMMANDED, _COMMANDED_TURN = 0.06, 0.3
-"""What its commands have to add up to since then: a robot that dithers stays where it is [m, rad]."""
+"""Least sum of its commands since then, because a robot with alternating commands stays in place [m, rad]."""
 
 _MOVED, _TURNED = 0.015, 0.1
-"""What is seen to move by more than this moves; less may be noise [m, rad]."""
+"""Least observed movement that is not noise [m, rad]."""
 
 _RETRY, _TRIAL = 5.0, 0.3
-"""A robot that was told to stand tries again after this time, for so long [s] ..."""
+"""Time after which a stopped robot tries again, and duration of the trial [s] ..."""
 
 _TRIAL_SPEED, _TRIAL_TURN = 0.2, 1.0
-"""... and no faster than this, as it may go where nobody sees it [m/s, rad/s]."""
+"""... and its top speed, because it may drive out of sight [m/s, rad/s]."""
 
 _LEVER = 0.2
 """Speed that counts as much as a turning rate of 1 rad/s where commands are compared [m]."""
@@ -81,7 +81,7 @@ class _Demand:
     latest: float = -inf
 
     def begin(self, time: float) -> None:
-        """Begin the sums anew."""
+        """Reset the sums."""
         self.since, self.x, self.y, self.turn = time, 0.0, 0.0, 0.0
 
     def add(self, command: RobotCommand, time: float) -> None:
@@ -107,11 +107,11 @@ class _Demand:
 class PictureWatch:
     """Lets robots stand whose commands have no effect that a camera shows.
 
-    A live camera's detections differ from frame to frame, if only by noise. A robot is told to stand when all
-    cameras that see it show exactly the same throughout, or when none of the commanded robots moves: at once
-    if nothing else does either, later if the ball or others move. One that is blocked while a commanded
-    team-mate moves drives on. It may move again when they do; it tries every 5 s, and at once when it is
-    commanded another way.
+    A live camera's detections differ from frame to frame, if only by noise. A robot is stopped when all
+    cameras that see it keep showing exactly the same, or when no commanded robot moves: at once if nothing
+    else moves either, later if the ball or others move. A robot that is blocked while a commanded team-mate
+    moves keeps driving. A stopped robot may move again when the others do; it tries every 5 s, and at once
+    when its command changes direction.
     """
 
     def __init__(self, notices: Notices) -> None:
@@ -119,7 +119,7 @@ class PictureWatch:
         self.clear()
 
     def clear(self) -> None:
-        """Begin anew, as after robots have been put elsewhere."""
+        """Reset, after robots have been placed elsewhere."""
         self._cameras: dict[int, _Camera] = {}
         self._seen: dict[RobotId, dict[int, float]] = {}
         self._anchors: dict[tuple[int, RobotId | None], _Pose] = {}
@@ -192,7 +192,7 @@ class PictureWatch:
         return bool(cameras) and all(it.heard - it.changed >= _PATIENCE for it in cameras)
 
     def _answered(self, robot: RobotId, stand: _Stand) -> bool:
-        """Return whether the picture, or a commanded robot, has moved since a robot was told to stand."""
+        """Return whether the picture, or a commanded robot, has moved since a robot was stopped."""
         if stand.frozen:
             return any(it.changed > stand.since for it in self._cameras_of(robot))
         return self._followed > stand.since

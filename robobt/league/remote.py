@@ -1,4 +1,4 @@
-"""What a team, an automatic referee and a remote control tell the game controller of a real match.
+"""Clients of the game controller in a real match: team, automatic referee and remote control.
 
 Source of the handshake and the signatures: ssl-game-controller, ``rcon/*.go``.
 """
@@ -105,7 +105,7 @@ class _Connection(Closing):
 
 
 class TeamConnection(_Connection):
-    """What a team's own program may ask for.
+    """Requests of a team's program.
 
     Args:
         name: the team's name as the controller has it.

@@ -1,4 +1,4 @@
-"""Which senders of camera frames are followed: several may share a field's cameras, but none may contradict.
+"""Selection of camera senders: several may share a field's cameras, but they must not contradict each other.
 
 No sockets and no clock: all times are arguments.
 """
@@ -97,7 +97,7 @@ class VisionSources:
         elif others and not source.followed:
             self._try(source, frame, sender, time, seen)
         else:
-            # Who sees nothing takes over from nobody: that one may only pause.
+            # A sender that sees nothing does not take over, because the other may only pause.
             source.followed |= bool(frame.robots or frame.balls) or set(self._cameras.values()) <= {sender}
         if contested or not source.followed:
             return False
@@ -105,12 +105,12 @@ class VisionSources:
         return True
 
     def _contest(self, source: _Source, sender: Address, camera: int) -> None:
-        """Keep a sender off whose camera another one sends."""
+        """Exclude a sender whose camera another sender covers."""
         source.free = source.heard + SILENCE
-        # One that has long been followed loses that camera only.
+        # A sender followed for long loses only that camera.
         source.followed &= source.heard - source.began > _NEW
         owner = self._cameras[camera]
-        # A program that was restarted is soon alone.
+        # A restarted program is soon the only sender.
         if self._sources[owner].heard > source.began:
             self._notices.tell(
                 f"vision of {sender[0]}",

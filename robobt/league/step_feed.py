@@ -1,4 +1,4 @@
-"""What is received in lock step: each wait lets the field go on, whatever this machine's clock says."""
+"""A feed in lock step: each wait advances the field, independent of this machine's clock."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from robobt.world.state import RobotId
 _ROUNDING = 1e-9
 
 _WAIT = 2.0
-"""How long what was sent before an answer may take to arrive: it travels by another way [s]."""
+"""Time for packets sent before an answer to arrive, because they take another route [s]."""
 
 
 class StepFeed(Feed):
@@ -46,7 +46,7 @@ class StepFeed(Feed):
         self._geometry_due = True
 
     def receive(self, wait: float) -> None:
-        """Let up to ``wait`` seconds pass, until the field has been seen anew.
+        """Advance by up to ``wait`` seconds, until a new frame has arrived.
 
         Raises:
             LeagueError: the game controller says nothing about this instant.

@@ -1,4 +1,4 @@
-"""What a user is told of during a match, or what ends it: a field that fell silent or was restarted."""
+"""Warnings and errors during a match: a field that fell silent or was restarted."""
 
 from __future__ import annotations
 
@@ -7,10 +7,10 @@ from robobt.league.feed import Feed
 from robobt.league.placing import TIMEOUT
 
 _SILENT = 1.0
-"""Silence of the vision that is told [s]."""
+"""Silence of the vision after which a warning is given [s]."""
 
 _WINDOW, _SLOW = 5.0, 0.9
-"""Decisions are counted for so long [s of the field]; fewer than this share of the due ones are told."""
+"""Period for counting decisions [s of the field], and share of the due ones that causes a warning."""
 
 
 class MatchWatch:

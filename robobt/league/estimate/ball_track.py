@@ -19,7 +19,7 @@ class BallMotion:
     """A ball's state in field coordinates.
 
     ``rolls_at`` is the speed at which sliding turns into rolling; below it, the ball rolls. ``z`` is the
-    height above where it lies, ``vz`` its rate [m, m/s].
+    height above a resting ball, ``vz`` its rate [m, m/s].
     """
 
     x: float
@@ -35,7 +35,7 @@ _RESTING_NOISE, _ROLLING_NOISE = 0.05, 0.25
 """Acceleration noise of a free ball that rests or rolls: carpets differ in how they slow it [m/s^2]."""
 
 _ROLLS = 0.1
-"""Speed from which on a ball rolls [m/s]."""
+"""Speed below which a ball rolls [m/s]."""
 
 _PUSHED_NOISE = 6.0
 """Acceleration noise of a ball that a robot may push [m/s^2]."""
@@ -71,7 +71,7 @@ class BallTrack:
     After a kick or a bounce it is unknown whether the ball slides or rolls: both
     hypotheses are tracked, and the one that fits better is reported.
 
-    It begins at rest in a place where it may have been seen by a ``camera``. The detections' standard
+    It starts at rest in a place, as seen by a ``camera`` if one is given. The detections' standard
     deviation is ``noise`` [m], ``means`` are the cameras' mean offsets.
 
     Attributes:
@@ -178,17 +178,17 @@ class BallTrack:
         elif known and p.several and self._contradicted(camera, kickable):
             if self._startled[camera] < _RELEARNT:
                 return
-            # The others go on seeing the ball where it was: the camera's offset has changed.
+            # The other cameras still see the ball where it was, so this camera's offset has changed.
             p.forget(camera)
             x, y = self.place(*seen, camera)
             dx, dy = x - m.x, y - m.y
             s = p.detection_variance(camera) + self._r
-            # What no offset explains has moved after all.
+            # A deviation too large for an offset means that the ball has moved.
             surprises = (dx * dx + dy * dy) / s > _SURPRISE
         self._last_camera = camera
         if surprises:
             self._startled.clear()
-            # Kicked, bounced or touched: the past motion tells nothing about the velocity now.
+            # After a kick, bounce or touch the past motion says nothing about the present velocity.
             p.jump(dx * dx + dy * dy, _KICK**2)
             self._split(m, self.time - self._last_step / 2)
             s = p.detection_variance(camera) + self._r
@@ -209,7 +209,7 @@ class BallTrack:
             m.rolls_at = self.settings.switch_share * (hypot(m.vx, m.vy) + lost)
 
     def _contradicted(self, camera: int, kickable: bool) -> bool:
-        """Return whether others still see the ball where it was, of which a camera sees it depart."""
+        """Return whether other cameras still see the ball in place while one camera sees it depart."""
         before, others = self._startled.get(camera, 0), set(self._startled) - {camera}
         self._startled[camera] = before + 1
         return not (kickable or others or (before and self._last_camera == camera))

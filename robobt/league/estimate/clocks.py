@@ -1,4 +1,4 @@
-"""How clocks elsewhere run against this machine's: the field's, and those of the cameras' computers.
+"""Clocks of the field and of the cameras' computers, relative to this machine's clock.
 
 The packets with the least delay show the offset between their sender's clock and this machine's; how that
 offset changes shows the sender's rate.
@@ -14,58 +14,58 @@ from robobt.league.estimate.kalman import Covariance, Mismatch
 from robobt.league.wire.vision import CameraFrame
 
 _BLOCK = 0.0999
-"""Packets sent within so long compete for the least delay [s of the field].
+"""Duration of a block: packets sent within it compete for the least delay [s of the field].
 
-Cameras send 6 or 10 frames in 0.1 s; a little less leaves it to no rounding which block the next is in.
+Cameras send 6 or 10 frames in 0.1 s; with slightly less, rounding does not decide the next frame's block.
 """
 
 _LONGEST_BLOCK = 0.0999
-"""Packets that arrive within so long do, of a slow field [s]."""
+"""Duration of a block of a slow field, by arrival times [s]."""
 
 _FEWEST = 4
-"""Blocks from which on a block can be odd, and the rate counts as measured."""
+"""Number of blocks after which a block can be odd, and the rate counts as measured."""
 
 _MEMORY = 20
-"""Blocks whose worst delays are remembered."""
+"""Number of blocks whose worst delays are kept."""
 
 _SLOWEST, _FASTEST = 0.05, 20.0
 """Rates beyond these are not believed [s of the field per s]."""
 
 _RATE_ERROR = 1.0
-"""Standard deviation of the first guess of the rate, as a share of it."""
+"""Standard deviation of the initial rate, relative to it."""
 
 _DRIFT, _TURN = 0.03, 0.3
-"""How fast a rate drifts as a rule, and where it evidently changes, as a share of it [1/s]."""
+"""Relative drift of a rate, normally and when it evidently changes [1/s]."""
 
 _LEAST_SPREAD, _SPREAD = 0.0003, 0.35
-"""Standard deviation of the least delay of a block: at least [s], and as a share of the mean delay."""
+"""Standard deviation of a block's least delay: lower bound [s], and share of the mean delay."""
 
 _FIRST_SPREAD = 0.001
-"""The same while nothing is known [s]."""
+"""Standard deviation of a block's least delay while nothing is known [s]."""
 
 _SMOOTHING = 0.2
 """Weight of the newest block in the mean delay."""
 
 _STEP, _STEP_SPREADS = 0.012, 6.0
-"""A block is odd that is off by more than this [s], and by more than so many standard deviations."""
+"""A block is odd if it is off by more than this [s] and by more than this many standard deviations."""
 
 _ODD, _ODD_TIME = 2, 0.5
-"""Odd blocks that agree, and time over which odd blocks go on [s of the field], that are believed."""
+"""Number of agreeing odd blocks, and duration [s of the field], after which odd blocks are believed."""
 
 _STRETCH = 2.0
-"""How long a camera's fastest packet counts [s]."""
+"""Time for which a camera's fastest packet counts [s]."""
 
 _IN_STEP = 0.05
-"""Clocks closer than this count as one: the delays of packets differ by as much [s]."""
+"""Clocks closer than this count as equal, because packets' delays differ by as much [s]."""
 
 _JUMP = 0.5
-"""A clock does not gain this much; a single packet that shows it has a wrong timestamp [s]."""
+"""Clocks do not jump ahead this far; a single packet that does so has a wrong timestamp [s]."""
 
 _CONFIRMATIONS = 3
 """Consecutive packets after which a clock that jumped ahead is believed."""
 
 _LATE, _SET_BACK = 0.2, 0.3
-"""Packets that are late by more are held up [s]; where they are for longer, the clock was set back [s]."""
+"""Packets later than this are delayed [s]; if that lasts longer than this, the clock was set back [s]."""
 
 
 @dataclass(slots=True)
@@ -97,13 +97,13 @@ class FieldClock:
     """The field's clock as a function of this machine's: its offset and its rate.
 
     Packets are taken in blocks; the promptest of each is corrected for the delay that even it is
-    likely to have and goes through a Kalman filter of offset and rate. A block that is off
-    altogether is held back until others confirm it: then the field's clock has jumped, as that of a
-    simulator does which stood still, or its rate has changed, and the estimate starts anew.
+    likely to have and goes through a Kalman filter of offset and rate. An odd block is held back until others
+    confirm it: then the field's clock has jumped, for example because a simulator was paused, or its rate has
+    changed, and the estimate restarts.
 
     All times of this machine are on one monotonic clock.
 
-    ``rate`` is how fast the field's clock runs [s of the field per s], and ``settled`` whether that is
+    ``rate`` is the rate of the field's clock [s of the field per s], and ``settled`` says whether it is
     measured.
     """
 
@@ -114,7 +114,7 @@ class FieldClock:
         self.clear()
 
     def clear(self) -> None:
-        """Forget the offset: the field's clock was restarted. The rate stays the best guess."""
+        """Forget the offset after a restart of the field's clock; keep the rate as the best guess."""
         self._known = False
         self._blocks = 0
         self._at = self._sent = 0.0
@@ -131,7 +131,7 @@ class FieldClock:
 
     @property
     def jitter(self) -> float:
-        """How much later than the promptest packets of late have come, at most [s of the field]."""
+        """Largest recent delay of a packet relative to the fastest one [s of the field]."""
         return max(self._late, default=0.0)
 
     def update(self, arrived: float, sent: float) -> None:
@@ -167,7 +167,7 @@ class FieldClock:
         del odd[1:-_FEWEST]
         last = odd[-_ODD:]
         agree = all(abs(self._miss(one) - self._miss(block)) < self._tolerance() for one in last)
-        # Packets that were held back and arrive all at once tell nothing.
+        # Packets that were held back and arrive all at once carry no information on the delay.
         apart = block.arrived - last[0].arrived > min(_BLOCK / self.rate, _LONGEST_BLOCK) / 2
         if len(last) == _ODD and agree and apart:
             self._restart(last, _RATE_ERROR / 10)
@@ -175,7 +175,7 @@ class FieldClock:
             self._restart(odd[-_FEWEST:], _RATE_ERROR)
 
     def _restart(self, blocks: list[_Block], error: float) -> None:
-        """Estimate anew from some blocks, the rate being known to a relative error."""
+        """Restart the estimate from some blocks, with the rate known to a relative error."""
         self.clear()
         self._covariance.vv = (error * self.rate) ** 2
         self._known, self._at, self._sent = True, blocks[0].arrived, blocks[0].sent
@@ -186,9 +186,9 @@ class FieldClock:
         first = self._blocks == 0
         self._blocks += 1
         if self.settled:
-            # Before, the delays within a block are confounded with the rate.
+            # Earlier, the delays within a block cannot be separated from the rate.
             self._delay += _SMOOTHING * (block.mean_delay - self._delay)
-        # The least of n delays, if these are distributed exponentially, is the n-th part of their mean.
+        # The least of n exponentially distributed delays is on average the mean divided by n.
         likely = self._delay / max(1, block.packets)
         spread = max(_LEAST_SPREAD, _SPREAD * self._delay) if self.settled else _FIRST_SPREAD
         p, elapsed = self._covariance, max(0.0, block.arrived - self._at)

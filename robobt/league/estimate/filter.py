@@ -1,4 +1,4 @@
-"""From detections to frames: where everything is, how fast it moves, and who has the ball.
+"""From detections to frames: positions, velocities and possession of the ball.
 
 No sockets and no clock: all times are arguments, on the clock of the detections'
 captures.
@@ -36,10 +36,10 @@ _NEVER = -inf, 0
 """No odd capture time, and how many frames had it."""
 
 _MIN_ROBOT_NOISE, _MIN_BALL_NOISE, _MIN_HEADING_NOISE = 0.0013, 0.0014, 0.01
-"""Noise that is always assumed [m, m, rad]. Source: ER-Force's Realistic."""
+"""Least noise assumed [m, m, rad]. Source: ER-Force's Realistic."""
 
 DETECTIONS, COVARIANCE = "detections", "covariance"
-"""The layers of what the cameras reported, and of how sure the filter is of it."""
+"""Drawing layers of the cameras' detections and of the filter's uncertainty."""
 
 _RADIUS_95 = 2.448
 """Radius of the circle that holds 95 % of a normal distribution of two dimensions, in standard deviations."""
@@ -128,7 +128,7 @@ class VisionFilter:
         self._sent: dict[RobotId, SentCommands] = {}
 
     def sent(self, time: float, commands: Mapping[RobotId, RobotCommand]) -> None:
-        """Record the commands that take effect at ``time``, for predictions."""
+        """Record commands that take effect at ``time``, for predictions."""
         for robot, command in commands.items():
             queue = self._sent.setdefault(robot, [])
             queue.append(Sent(time, command))
@@ -137,7 +137,7 @@ class VisionFilter:
                 queue.pop(0)
 
     def put_ball(self, x: float, y: float) -> None:
-        """Assume that the ball lies there until it is seen elsewhere, as a robot may hide it."""
+        """Assume that the ball is there until it is seen elsewhere, because a robot may hide it."""
         if self.captured is not None:
             self._ball = self._new_ball(x, y, self.captured)
             self._ball_seen = self.captured
@@ -206,7 +206,7 @@ class VisionFilter:
     def frame_at(self, time: float) -> Frame:
         """Return the field at ``time``, predicted with the commands that were sent.
 
-        A ball that was never seen lies in the centre.
+        A ball that was never seen is put in the centre.
         """
         motions = {robot: self._robot_at(robot, time) for robot in sorted(self._robots)}
         ball = self._ball_at(time, motions)
@@ -354,7 +354,7 @@ class VisionFilter:
         camera: int,
         motions: Mapping[RobotId, RobotMotion],
     ) -> None:
-        """Find out whether the ball that was seen is kicked, flies, or is somebody's."""
+        """Find out whether the detected ball was kicked, flies, or is in a robot's possession."""
         flights = self._flights
         kick = self._kick_watch.update(time, *track.place(seen.x, seen.y, camera), motions, self._sent)
         above = flights.at(time)

@@ -31,13 +31,13 @@ from robobt.world.geometry import FloatArray
 from robobt.world.state import BALL_RADIUS
 
 _FEWEST = 6
-"""Detections from which on a kick can be told to be a chip."""
+"""Number of detections from which a chip can be distinguished."""
 
 _LONGEST = 0.9
-"""A kick that is not known for a chip after so long is a flat one [s]."""
+"""A kick not recognised as a chip within this time counts as flat [s]."""
 
 _NOT_FLAT = 9.0
-"""Mean squared misfit of a flat kick, in variances of a detection, from which on it is none."""
+"""Mean squared misfit, in variances of a detection, from which a kick is not flat."""
 
 _BETTER = 0.3
 """A chip has to have less than this share of the flat kick's misfit."""
@@ -49,49 +49,49 @@ _ELEVATION = (0.36, 2.8)
 """Least and greatest tangent of the angle at which robots chip: 20 and 70 degrees."""
 
 _USUAL = 0.2
-"""How far that tangent is usually from 1: robots chip at about 45 degrees."""
+"""Standard deviation of that tangent from 1, because robots chip at about 45 degrees."""
 
 _LEAST_RISE = 1.0
-"""A ball that rises slower at first hops no higher than 5 cm [m/s]. Source: ER-Force's filter."""
+"""A ball with a lower initial vertical speed hops less than 5 cm high [m/s]. Source: ER-Force's filter."""
 
 _START = (0.01, 0.01, 20.0, 20.0, 0.004, 20.0)
-"""How well a launch is known before the ball is seen in flight: place, velocity, height [m, m/s]."""
+"""Prior standard deviations of a launch: place, velocity, height [m, m/s]."""
 
 _ANYWHERE = (1.0, 1.0, 20.0, 20.0, 1.0, 20.0)
-"""The same of a ball of which is not known when it was kicked."""
+"""Prior standard deviations of a launch with an unknown kick time."""
 
 _HIGHEST = 2.0
 """No ball that is chipped by the rules, at 6.5 m/s and 70 degrees, rises higher [m]."""
 
 _FASTER = 0.3
-"""A ball that is seen to gain so much with no robot near does not roll [m/s]."""
+"""A ball that gains this much observed speed with no robot near does not roll [m/s]."""
 
 _BACK = 1e-6
-"""A ball seen no further than this from where it was kicked has flown nowhere [m]."""
+"""A ball seen no farther than this from the kick has not flown [m]."""
 
 _HOP = (0.05, 0.05, 0.3, 0.3, 0.02, 0.3)
-"""The same of a hop, from the one before."""
+"""Prior standard deviations of a hop, from the previous hop."""
 
 _LAUNCHES, _UNSEEN = 4, 6
 """Number of launch times tried per interval between two detections, and number of detections before the kick
 from which the ball may have been launched."""
 
 _SETTLED = 15
-"""Detections in flight from which on it is known between which two it began."""
+"""Number of detections in flight after which the interval of the launch is known."""
 
 _LOST = 0.1
-"""A ball seen this far from where it should be is in another flight, or none [m]."""
+"""A ball detected this far from the prediction is not in this flight [m]."""
 
 _LOST_FOR = 3
-"""As many detections of it in a row."""
+"""Number of such detections in a row that end a flight."""
 
 _MEMORY = 12
-"""Detections that are remembered from before a kick."""
+"""Number of detections kept from before a kick."""
 
 
 @dataclass(slots=True)
 class _Seen:
-    """A detection: its time, its place and what a height shifts it by."""
+    """A detection: its time, its place, and its shift per metre of height."""
 
     time: float
     x: float
@@ -104,13 +104,13 @@ class FlightWatch:
     """Finds chips among kicks, and follows the ball until it rolls.
 
     Args:
-        settings: of the ball.
+        settings: settings of the ball.
         noise: standard deviation of a detection [m].
-        cameras: where those are, by number; what others see tells no height. May be filled in later.
+        cameras: positions of the cameras, by number; other cameras give no height. May be filled in later.
 
     Attributes:
         hop: the ball in the air, None while it is on the ground.
-        landed: the ball when it began to roll, to be taken by who asked for it.
+        landed: the ball when it began to roll, to be taken by the caller.
     """
 
     def __init__(self, settings: BallSettings, noise: float, cameras: Mapping[int, CameraPlace]) -> None:
@@ -126,7 +126,7 @@ class FlightWatch:
         self._lost = 0
 
     def clear(self) -> None:
-        """Forget the ball: it was put somewhere else."""
+        """Forget the ball, because it was placed elsewhere."""
         self.hop = self._before = self.landed = None
         self._recent.clear()
 
@@ -142,15 +142,15 @@ class FlightWatch:
         return hop.at(time)
 
     def known(self, time: float, ball: BallMotion) -> None:
-        """Take in where somebody else's filter has the ball, and how high."""
+        """Take in the ball's position and height from another filter."""
         self.hop = Hop(time, ball, 1) if ball.z > LAST_APEX or ball.vz > _LEAST_RISE else None
 
     def update(
         self, time: float, camera: int, x: float, y: float, kick: Kick | None = None, near: bool = False
     ) -> None:
-        """Take in where a camera saw the ball [s, m].
+        """Take in a camera's detection of the ball [s, m].
 
-        ``kick`` is what is thereby known of one, ``near`` whether the ball seems to be near a robot.
+        ``kick`` is the kick that it reveals, if any, ``near`` says whether the ball seems to be near a robot.
         """
         place = self._cameras.get(camera)
         if place is None:
@@ -171,16 +171,16 @@ class FlightWatch:
             self._judge(self._before)
 
     def _begin(self, kick: Kick) -> None:
-        """Look from a kick on whether it was a chip."""
+        """Start checking whether a kick was a chip."""
         self.hop = None
         earlier = [seen for seen in self._recent if seen.time < kick.time - 1e-6]
         self._before, self._unknown = (earlier[-1] if earlier else None), False
-        # Towards its camera it rises unseen at first.
+        # A ball chipped towards its camera rises unseen at first.
         self._last = earlier[-_UNSEEN:]
         self._since = [seen for seen in self._recent if self._before and seen.time > self._before.time]
 
     def _notice(self) -> None:
-        """Notice a ball that gets faster away from robots: rising towards its camera, it seems to stand."""
+        """Detect a ball that gets faster away from robots, as one that rises towards its camera seems to."""
         if len(self._recent) < 5:
             return
         first, middle, last = self._recent[-5], self._recent[-3], self._recent[-1]
@@ -194,7 +194,7 @@ class FlightWatch:
             self._since = [seen for seen in self._recent if seen.time > first.time]
 
     def _judge(self, before: _Seen) -> None:
-        """Decide whether what was seen since the kick is a chip."""
+        """Decide whether the detections since the kick show a chip."""
         if self._since[-1].time - before.time > _LONGEST:
             self._before = None
             return
@@ -300,7 +300,7 @@ class FlightWatch:
 
 
 def _left(before: _Seen, seen: _Seen) -> bool:
-    """Return whether a ball is seen, later, elsewhere than it was: else it tells no direction."""
+    """Return whether a ball was later seen elsewhere; otherwise it has no direction."""
     return seen.time > before.time and hypot(seen.x - before.x, seen.y - before.y) >= _BACK
 
 

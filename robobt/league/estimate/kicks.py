@@ -1,4 +1,4 @@
-"""Who kicked, judged by where the ball was seen.
+"""Detection of kicks and kickers from the ball's detections.
 
 No command is needed to see a kick, but the recent ones help: a weak kick counts if it was commanded,
 and a ball that bounces off a robot of ours, or that it pushes, is not kicked.
@@ -18,25 +18,25 @@ _KICKED_SHARE, _SURELY_KICKED = 0.25, 1.0
 """A kicked ball leaves its robot with this share of the commanded speed, or this fast [m/s]."""
 
 _COMMAND_WINDOW, _EARLY = 0.3, 0.05
-"""What is seen may follow a command by so long, or precede it as far as the clocks are known [s]."""
+"""A detected kick may follow its command by this time, or precede it by the clocks' uncertainty [s]."""
 
 _GAIN = 0.5
-"""A kick that nobody commanded makes the ball faster by this at least [m/s]."""
+"""Least increase of speed of a kick without a command [m/s]."""
 
 _AWAY = 0.05
 """A kicked ball gets this far from the front [m]."""
 
 _NEAR, _ASIDE, _SPREADING = 0.06, 0.07, 0.35
-"""Where a ball lies that is kicked: so far from the front and beside its middle [m]; and how that widens."""
+"""Place of a ball that can be kicked: distance from the front and beside its middle [m], and their growth."""
 
 _UNSEEN = 0.05
-"""A kicked ball may have been on its way for so long when it is first seen to leave [s]."""
+"""Longest time that a kicked ball has been on its way when first seen to leave [s]."""
 
 _PAUSE = 0.15
-"""Two kicks of one robot are this far apart [s]."""
+"""Least time between two kicks of one robot [s]."""
 
 _SHORTEST, _LONGEST = 0.004, 0.5
-"""Detections closer in time are of one instant, those further apart tell no speed [s]."""
+"""Detections closer in time are simultaneous, those farther apart give no speed [s]."""
 
 
 @dataclass(slots=True)
@@ -49,7 +49,7 @@ class Kick:
 
 @dataclass(slots=True)
 class _Seen:
-    """Where the ball was in a robot's frame, and how fast it left [m, m/s]."""
+    """The ball's position in a robot's frame, and the speed at which it left [m, m/s]."""
 
     ahead: float
     aside: float
@@ -65,7 +65,7 @@ class _Leaving:
 
 
 class KickWatch:
-    """Finds the kicks in where the ball and the robots were seen.
+    """Finds kicks in the detections of ball and robots.
 
     ``face`` is the distance from a robot's centre to its flat front [m].
     """
@@ -139,7 +139,7 @@ class KickWatch:
 
 
 def _enough(sent: SentCommands, time: float) -> float | None:
-    """Return how fast a ball just kicked leaves at least; None if the robot was not told to [m/s]."""
+    """Return the least speed of a ball just kicked [m/s]; None if the robot had no kick command."""
     if not sent:
         return _SURELY_KICKED
     ends = [since for since, _ in sent[1:]] + [time]

@@ -64,7 +64,8 @@ class MeanOffsets:
         counts, means = self._counts, self._means
         for camera in offsets:
             counts[camera] = counts.get(camera, 0) + 1
-        # The camera that is known least, and the same weight for all: else they would no longer add up to 0.
+        # All cameras get the weight of the least known one; otherwise their offsets would no longer add up to
+        # 0.
         weight = max(_LEARNING_RATE, 1.0 / min(counts[camera] for camera in offsets))
         for axis in range(self._axes):
             changes = {camera: offset[axis] - self.of(camera)[axis] for camera, offset in offsets.items()}
@@ -188,7 +189,7 @@ class OffsetCovariance:
                 self._clear(self._row(camera))
 
     def forget(self, camera: int) -> None:
-        """Let a camera's next detection tell its offset anew."""
+        """Estimate a camera's offset again from its next detection."""
         known = self._cameras.get(camera)
         if known is not None:
             known.detections = 0

@@ -13,7 +13,7 @@ from robobt.world.geometry import to_robot_frame
 from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS, RobotId
 
 _MOUTH_SLACK = 0.004
-"""Added to the depth in which the ball counts as in the mouth, for the estimate's own error [m]."""
+"""Addition to the depth at which the ball counts as in the mouth, for the estimate's error [m]."""
 
 _HOLD_SLACK, _HOLD_SPEED = 0.012, 0.5
 """A ball this close to the mouth and this slow relative to it is carried [m, m/s]."""
@@ -50,8 +50,8 @@ class Possession:
     """Decides who has the ball.
 
     Attributes:
-        holds: who carries the ball: nobody, one, or several that hold it at once.
-        last_touch: who touched it last, None before the first touch.
+        holds: the robots that carry the ball: none, one, or several at once.
+        last_touch: the robot that touched the ball last, None before the first touch.
         feedback: last report of each robot's break-beam sensor.
     """
 
@@ -62,7 +62,7 @@ class Possession:
         self.feedback: dict[RobotId, bool] = {}
 
     def update(self, ball: BallMotion, motions: Mapping[RobotId, RobotMotion]) -> None:
-        """Judge anew from the estimates at the ball's last detection."""
+        """Update possession from the estimates at the ball's last detection."""
         self.holds = []
         reach = ROBOT_RADIUS + BALL_RADIUS + _TOUCH_GAP
         for robot, m in motions.items():
@@ -70,17 +70,17 @@ class Possession:
                 continue
             self.last_touch = robot
             ahead, aside = to_robot_frame(ball.x - m.x, ball.y - m.y, m.heading)
-            # The mouth's own velocity where the ball lies.
+            # The mouth's velocity at the ball.
             vx, vy = m.vx - m.omega * (ball.y - m.y), m.vy + m.omega * (ball.x - m.x)
             slow = hypot(ball.vx - vx, ball.vy - vy) < _HOLD_SPEED
             if slow and self._in_mouth(ahead, aside, _HOLD_SLACK):
                 self.holds.append(Hold(robot, ahead, aside))
 
     def carried(self, motions: Mapping[RobotId, RobotMotion]) -> BallMotion | None:
-        """Return the motion of the ball given those of the robots, None where nobody carries it.
+        """Return the motion of the ball given the robots' motions; None if no robot carries it.
 
-        Several would each have it go their own way: it goes between. Where they part while it is not seen,
-        it is with those whose sensors report it, and where these say nothing, with nobody.
+        With several holders the mean of their predictions is used. If they part while the ball is not seen,
+        the ball stays with those whose sensors report it, or with none if no sensor reports.
         """
         holders = [hold for hold in self.holds if hold.robot in motions]
         balls = [hold.ball(motions[hold.robot]) for hold in holders]
@@ -109,7 +109,7 @@ class Possession:
 
 
 def _apart(balls: list[BallMotion]) -> float:
-    """Return how far from the first the farthest is [m]."""
+    """Return the distance from the first place to the farthest one [m]."""
     return max((hypot(ball.x - balls[0].x, ball.y - balls[0].y) for ball in balls), default=0.0)
 
 

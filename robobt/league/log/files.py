@@ -30,7 +30,7 @@ _MAX_RECORD = 1 << 20
 """Longest record that is kept [bytes]; no packet is longer, but the index of a log may be."""
 
 _PIECE = 1 << 16
-"""So much of a longer record is read at a time [bytes]."""
+"""Bytes of a longer record that are read at a time."""
 
 _FLUSH_EVERY = 600
 """Records from one flush to the next: some seconds of a match."""
@@ -148,7 +148,7 @@ def _read_record(file: IO[bytes], where: Path, number: int) -> LogRecord | None:
 
 
 def _skip(file: IO[bytes], size: int) -> bool:
-    """Read past so many bytes; return whether they are all there."""
+    """Skip this many bytes; return whether all were there."""
     while size > 0:
         read = len(file.read(min(size, _PIECE)))
         if not read:

@@ -16,9 +16,9 @@ from robobt.signals import Terminated, check, uninterrupted
 def log_field(
     path: str | Path, endpoints: Endpoints, interface: str | None = None, seconds: float | None = None
 ) -> dict[LogKind, int]:
-    """Log what vision, tracker and game controller send, until interrupted or for so many seconds.
+    """Log the packets of vision, tracker and game controller, until interrupted or for ``seconds``.
 
-    It returns how many packets of each kind were written.
+    Return the number of packets of each kind that were written.
 
     Args:
         path: the log; compressed when the name ends in ``.gz``.

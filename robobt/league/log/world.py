@@ -26,7 +26,7 @@ _GAP = 2.0
 
 
 class LogWorld(World):
-    """Plays a log back as a :class:`robobt.world.World` whose robots obey nobody.
+    """Plays a log back as a :class:`robobt.world.World` whose robots ignore commands.
 
     Frames come from the log's vision through the filter, or from its tracked
     frames where it holds no vision; the game state comes from its referee messages.

@@ -39,7 +39,7 @@ class MatchPorts(Closing):
 
     Attributes:
         senders: of vision, tracker and referee, by these names.
-        flooded: the team that has sent far more than anybody needs, None without one.
+        flooded: the team that has sent far too many packets, or None.
 
     Raises:
         OSError: there is no free port.
@@ -67,7 +67,7 @@ class MatchPorts(Closing):
         self._opened.close()
 
     def addresses(self, team: Team) -> dict[str, str]:
-        """Return what a team's program is told: addresses and port numbers by their names."""
+        """Return the addresses and port numbers for a team's program, by name."""
         own = {kind: str(port.port) for (whose, kind), port in self._receivers.items() if whose is team}
         return {"team": team.value, "host": LOOPBACK, **self._places, **own}
 
@@ -128,14 +128,15 @@ def _own_group(port: int) -> str:
 
 
 def _reserved() -> socket.socket:
-    """Return a socket that holds a free port of the loopback: nobody else who asks for one gets it.
+    """Return a socket that reserves a free port of the loopback against other requests for one.
 
     The port's number is for a multicast group, which receivers may share.
     """
     holder = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
     try:
         holder.bind((LOOPBACK, 0))
-        # Only now, lest it shares the port of another match. Who binds to every address may still do so.
+        # Set only now, so that it does not share another match's port; a program bound to all addresses still
+        # may.
         holder.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
     except OSError:
         holder.close()

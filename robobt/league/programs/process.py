@@ -1,4 +1,4 @@
-"""A team's program as a child process that ends with its match, with all it has started."""
+"""A team's program as a child process that ends with its match, including its own children."""
 
 from __future__ import annotations
 
@@ -72,7 +72,7 @@ class TeamProcess(Closing):
 
     Attributes:
         printed: how much it has printed [bytes].
-        stubborn: whether it, or a child of it, did not end when it was told to (Linux).
+        stubborn: whether it, or a child of it, did not end when asked to (Linux).
 
     Raises:
         OSError: it cannot be started.
@@ -118,7 +118,7 @@ class TeamProcess(Closing):
         return f"its program {how}{f': {one_line(last, 200)}' if last else ''}"
 
     def tell(self) -> None:
-        """Tell it, and everything it has started, to end; each once."""
+        """Ask it, and everything it has started, to end; each once."""
         for process in self._marked():
             if process not in self._told:
                 self._told.add(process)
@@ -126,13 +126,13 @@ class TeamProcess(Closing):
                     os.kill(process, signal.SIGTERM)
 
     def leave(self, within: float) -> None:
-        """Wait ``within`` [s] for the end of it that it was told of, and find out whether it is stubborn."""
+        """Wait ``within`` [s] for its end after a request, and find out whether it is stubborn."""
         end = time.monotonic() + within
         while self._marked():
             if time.monotonic() > end:
                 self.stubborn = True
                 return
-            # What has been started in the meantime was not told yet.
+            # Children started meanwhile have not been asked yet.
             self.tell()
             time.sleep(0.02)
 
@@ -153,7 +153,7 @@ class TeamProcess(Closing):
             self._reader.join(_WORDS)
 
     def _kill(self) -> None:
-        """Kill what is left: the program may have stopped or killed its guard."""
+        """Kill the remaining processes, because the program may have stopped or killed its guard."""
         with suppress(OSError):
             os.killpg(self._process.pid, signal.SIGKILL)
         for process in self._marked():

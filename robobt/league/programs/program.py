@@ -45,11 +45,10 @@ class Program(Settings):
         10.0, gt=0, le=600, description="how long it may then be silent until it has lost [s]"
     )
     stays: bool = Field(
-        False, description="whether it goes on after a match and plays the next one, if the other side's does"
+        False,
+        description="whether it keeps running and plays the next match, if the other side's program does",
     )
-    ends_within: float = Field(
-        30.0, gt=0, le=600, description="how long it may take to end when it is told to by SIGTERM [s]"
-    )
+    ends_within: float = Field(30.0, gt=0, le=600, description="time for it to end after SIGTERM [s]")
 
     @field_validator("command")
     @classmethod
@@ -88,7 +87,7 @@ class Program(Settings):
 
 
 class ForfeitError(RobobtError, RuntimeError):
-    """A team's program crashed, is silent, was never ready, or does what no match can bear.
+    """A team's program crashed, is silent, was never ready, or disturbs the match.
 
     Attributes:
         team: whose it is.

@@ -1,4 +1,4 @@
-"""Programs that go on when their match has ended, and play the next one of the same teams."""
+"""Programs that keep running after their match and play the next match between their teams."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def programs_in(
 
     Raises:
         OSError: there is no free port.
-        ForfeitError: a program does not end when it is told to.
+        ForfeitError: a program does not end when asked to.
     """
     if not all(program.stays for program in programs.values()):
         with ProgramWorld(world, scenario, programs, folders, outputs, speed) as served:

@@ -42,17 +42,17 @@ class ProgramWorld(WrappedWorld):
     """Another world in which programs command the robots of one or both teams. A context manager.
 
     The field, as cameras without noise see it, is published once a control period, and so are the
-    referee's decisions. Programs in lock step are waited for instead, and answered what they see after as
-    much time as they ask for; with nobody else a match is as fast as they are, and repeatable. Programs are
+    referee's decisions. The match waits for programs in lock step and answers each with its view after the
+    time it asked for; with such programs only, a match is as fast as they are, and repeatable. Programs are
     started when the world is reset; the match begins once each of them has commanded its robots. Until then
     they are shown the field at rest and HALT.
 
     Args:
-        world: where it is played.
-        scenario: what is played.
-        programs: by the team.
-        folders: where they run, likewise.
-        outputs: files for what they print, likewise.
+        world: the world to play in.
+        scenario: the scenario that is played.
+        programs: programs by team.
+        folders: working folders of the programs, by team.
+        outputs: files for the programs' output, by team.
         speed: simulated time over real time.
 
     Raises:

@@ -1,12 +1,12 @@
 """The official game controller one step at a time: its clock stands still between two of our messages.
 
 Source of messages: ssl-game-controller, ``ci/ci.go`` and ``engine/``. Each message with a time makes one
-tick, which is answered at once with the state before whatever it leads to. That (a command that follows by
-itself, an event that the controller raises) is queued, and so are the changes that we send; each is answered
-when it is done, and may lead to further ones, which are queued in turn. Nothing says to what an answer
-belongs, and a tick that meets a queue that is not empty repeats what waits there, or even crashes the
-controller. So a tick is sent only when all before it is done: a change of the status message is answered
-after all that was queued before, and alone once the queue was empty.
+tick, which is answered at once with the state before its consequences. Consequences (an automatic command, an
+event that the controller raises) are queued, and so are the changes that we send; each is answered when it is
+done and may queue further ones. Answers do not name their request, and a tick that meets a non-empty queue
+repeats the waiting entries or even crashes the controller. So a tick is sent only after all earlier entries
+are done: a change of the status message is answered after everything queued before it, and alone once the
+queue was empty.
 """
 
 from __future__ import annotations
@@ -28,15 +28,15 @@ from robobt.league.wire.tracker import fill_tracked
 from robobt.world.state import Frame
 
 EPOCH = 1_700_000_000
-"""What the controller's clock shows when the match begins [s]; any time but 0 will do."""
+"""The controller's clock at the start of the match [s]; any time except 0 works."""
 
 _LONGEST = 50
-"""What one thing leads to has never led to so many others."""
+"""More consequences than one change has ever had."""
 
 _RESTLESS = "the game controller does not come to rest"
 
 _SILENCE = 10.0
-"""The controller has failed when it does not answer for so long [s]."""
+"""Time without an answer after which the controller counts as failed [s]."""
 
 _TRACKER = "robobt"
 
@@ -65,7 +65,7 @@ class LockstepController:
         Args:
             seconds: simulated time [s].
             frame: what is on the field, seen from blue's side.
-            geometry: the field; once, after the division has been told.
+            geometry: the field; once, after the division was sent.
         """
         message = CiInput(timestamp=EPOCH * 1_000_000_000 + round(seconds * 1e9))
         if frame is not None:
@@ -77,12 +77,12 @@ class LockstepController:
         self.asked = True
 
     def answer(self) -> list[Referee]:
-        """Return what the controller said when it was asked: the state before what follows from it."""
+        """Return the controller's answer to the last tick: the state before its consequences."""
         self.asked = False
         return [self._next()]
 
     def change(self, changes: Sequence[Change], config: Config | None = None) -> list[Referee]:
-        """Change the match at once, without time passing; return what the controller says of it.
+        """Change the match at once, without time passing; return the controller's answers.
 
         Changes are made in their order. One that it ignores is left out without a word.
 
@@ -101,7 +101,7 @@ class LockstepController:
         return said + self.rest()
 
     def rest(self) -> list[Referee]:
-        """Wait until all that the last tick led to is done, and return what the controller says of it."""
+        """Wait until all consequences of the last tick are done, and return the controller's answers."""
         said: list[Referee] = []
         for _ in range(_LONGEST):
             answers = self._marked(CiInput())
@@ -111,7 +111,7 @@ class LockstepController:
         raise GameControllerError(_RESTLESS)
 
     def _marked(self, message: CiInput) -> list[Referee]:
-        """Send a message of changes; return what the controller says until all before and in it are done."""
+        """Send a message of changes; return the answers until it and everything before it are done."""
         # Changes are done in order, so this one's answer comes after all of those.
         self._changes += 1
         done = f"{_TRACKER} {self._changes}"

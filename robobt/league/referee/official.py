@@ -1,4 +1,4 @@
-"""The referee of a simulated match that asks the official controller, in lock step."""
+"""The referee of a simulated match by the official game controller, in lock step."""
 
 from __future__ import annotations
 
@@ -31,20 +31,20 @@ from robobt.world.presence import without_absent
 from robobt.world.state import Frame
 
 _DECIDING, _STOPPED, _WAITING = 0.1, 0.2, 0.8
-"""Time from one look of the controller at the match to the next [s].
+"""Time between two ticks of the controller [s].
 
-While it has something to decide, while play is stopped, while it waits for a report: with the ball in play
-or being placed. Reports are told at once.
+Three values: while it has something to decide; while play is stopped; while it waits for a report, with the
+ball in play or being placed. Reports are sent at once.
 """
 
 _DECIDES = 1.5
-"""The controller takes a second to believe a report; for so long it has something to decide [s]."""
+"""Time for which the controller has to decide on a report, which it believes after a second [s]."""
 
 
 class OfficialReferee:
-    """Tells the official controller what is on the field and what happened, and decides as it does.
+    """Sends the true frames and events to the official controller, and adopts its decisions.
 
-    What it raises itself, and what of our reports it accepts, are the events of its decisions.
+    The events of its decisions are those that it raises itself and the reports that it accepts.
 
     Args:
         setup: what is played.
@@ -102,7 +102,7 @@ class OfficialReferee:
         return Decision(game, tuple(events), place)
 
     def tell(self, change: Change) -> None:
-        """Let the controller change the match at its next step, as somebody at its screen may."""
+        """Let the controller change the match at its next step, as a person at its screen may."""
         self._reports.append(change)
 
     def close(self) -> None:
@@ -114,7 +114,7 @@ class OfficialReferee:
     def _set_up(self, controller: LockstepController, frame: Frame) -> list[RefereeEvent]:
         setup = self._setup
         opening = opening_of(setup.settings, setup.field, frame, np.random.default_rng(crc32(frame.packed())))
-        # Changes need a clock; sizes are told after the division, which would change them.
+        # Changes need a clock; sizes are sent after the division, which would change them.
         controller.ask(frame.time)
         said = controller.answer() + controller.change(setup.changes(opening), setup.config())
         controller.ask(frame.time, None, write_geometry(setup.field))
@@ -137,7 +137,7 @@ class OfficialRefereeFactory:
 
     @property
     def name(self) -> str:
-        """What files of results are told apart by."""
+        """Name by which result files are distinguished."""
         return "official"
 
     def __call__(self, scenario: Scenario, field: FieldGeometry) -> OfficialReferee:

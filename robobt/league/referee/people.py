@@ -1,4 +1,4 @@
-"""What people do at a match under the official controller: click, and carry the ball.
+"""The people at a match under the official controller: they click, and place the ball.
 
 Source of what the controller leaves to them: ssl-game-controller, ``engine/process_continue*.go``.
 """
@@ -46,7 +46,7 @@ _MOVED = 0.1
 """The controller's place is not the one of the restart from this distance on [m]."""
 
 _LONG = 60.0
-"""A stop that lasts longer than this is told, with what the controller waits for [s]."""
+"""A stop longer than this is reported, with the reason for which the controller waits [s]."""
 
 _BREAKS = frozenset(
     {Stage.NORMAL_HALF_TIME, Stage.EXTRA_TIME_BREAK, Stage.EXTRA_HALF_TIME, Stage.PENALTY_SHOOTOUT_BREAK}
@@ -69,7 +69,7 @@ class People:
         self._stages = Stages(settings)
 
     def clicks(self, frame: Frame, game: GameState) -> list[Change]:
-        """Return what has to be told to the controller for the match to go on."""
+        """Return the changes to send to the controller so that the match continues."""
         lasted = self._lasted(frame, game)
         if game.stage is Stage.POST_GAME:
             return []
@@ -92,7 +92,7 @@ class People:
             stages.played = stages.length - game.stage_time
         over = stages.over((game.blue_score, game.yellow_score)) if game.stage in _PLAYED else None
         if over is not None and game.restart is Restart.PENALTY and not stages.shoot_out:
-            # It is still taken, but nothing goes on by itself any more.
+            # The penalty kick is still taken, but nothing continues automatically any more.
             return [command("PENALTY", game.restart_team)] if lasted >= _IDLE else []
         if over is not None:
             return [stage(over)]

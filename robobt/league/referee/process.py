@@ -119,7 +119,7 @@ class GameControllerProcess(Closing):
         self._end()
 
     def crash(self) -> str:
-        """Return what it has said of its own crash, nothing if it has not crashed."""
+        """Return its message about a crash, empty without a crash."""
         lines = self._log.read_text(errors="replace").splitlines() if self._log.exists() else []
         return next((one_line(line) for line in lines if line.startswith(("panic:", "fatal error:"))), "")
 

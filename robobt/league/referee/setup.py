@@ -1,4 +1,4 @@
-"""How a match is set up at the official controller, and the changes that its people would click.
+"""Setting up a match at the official controller, and the changes that people would click.
 
 Source: ssl-game-controller, ``statemachine/`` for the changes, ``config/config.go`` for the settings.
 """
@@ -28,9 +28,9 @@ _FOR_EVER = 86_400.0
 
 @dataclass(slots=True, frozen=True)
 class MatchSetup:
-    """What the controller has to know of a match.
+    """The data of a match for the controller.
 
-    ``field`` is where it is played, by ``robots`` of each team, for as long as the ``settings`` say.
+    ``field`` is its field, ``robots`` the number per team, and ``settings`` have its times.
     """
 
     field: FieldGeometry
@@ -40,7 +40,7 @@ class MatchSetup:
     def game_settings(self) -> dict[str, object]:
         """Return the settings of the controller's game: goals are approved at once, and times are ours.
 
-        Halves without end last as long as it can count, and so does what is never to be raised.
+        Halves without end, and events never to be raised, get the longest time that it can count.
         """
         given = self.settings
         normal, extra = (
@@ -65,7 +65,7 @@ class MatchSetup:
         return game
 
     def config(self) -> Config:
-        """Return how the controller has to work: by itself, and believing our automatic referee."""
+        """Return its configuration: it continues by itself and accepts our automatic referee's reports."""
         config = Config(auto_continue=True)
         behaviours: AutoRefConfig = config.auto_ref_configs[ORIGIN]
         for name in GameEvent.Type.keys():  # noqa: SIM118 (an enum's wrapper is no mapping)
@@ -73,7 +73,7 @@ class MatchSetup:
         return config
 
     def changes(self, opening: Opening) -> list[Change]:
-        """Return what sets the match up and begins it; blue defends -x."""
+        """Return the changes that set up and start the match; blue defends -x."""
         division = division_of(self.field)
         most = self.settings.max_robots or max(division.robots, *self.robots.values())
         update = Change.UpdateConfig(

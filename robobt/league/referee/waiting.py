@@ -1,4 +1,4 @@
-"""What the official controller waits for, in words: it does not say so itself.
+"""The reasons for which the official controller waits, in words, because it does not report them.
 
 Source: ssl-game-controller, ``engine/process_continue_next_command.go``.
 """
@@ -20,11 +20,11 @@ _NEAR_BALL = 0.54
 """No robot's centre may be nearer to the ball in STOP [m]."""
 
 _PLACED, _AREA_GAP, _STILL = 1.0, 0.7, 0.2
-"""The ball has to lie so near to its place, so far from defence areas, so slow [m, m, m/s]."""
+"""Largest distance of the ball from its place, least distance from defence areas, top speed [m, m, m/s]."""
 
 
 def ball_problems(field: FieldGeometry, frame: Frame, game: GameState) -> list[str]:
-    """Return what is wrong with the place of the ball for play to go on; nothing where it is right."""
+    """Return why the ball's place prevents play from continuing; empty if it is right."""
     ball, problems = frame.ball, []
     if ball.speed >= _STILL:
         problems.append("the ball rolls")
@@ -38,7 +38,7 @@ def ball_problems(field: FieldGeometry, frame: Frame, game: GameState) -> list[s
 
 
 def waits_for(field: FieldGeometry, frame: Frame, game: GameState) -> list[str]:
-    """Return what keeps a STOP or the preparation of a kick-off or penalty kick from going on, in words.
+    """Return why a STOP or the preparation of a kick-off or penalty kick does not continue, in words.
 
     The frame is a true one, seen from blue's side.
     """

@@ -1,15 +1,15 @@
-"""When a served field has to be simulated on. No clock here: all times are arguments."""
+"""Decides when a served field has to be stepped. No clock here: all times are arguments."""
 
 from __future__ import annotations
 
 _BEHIND = 0.25
-"""A server that is later than this leaves out what it missed instead of sending it all at once [s]."""
+"""A server later than this skips frames instead of sending them all at once [s]."""
 
 _CATCH_UP = 0.005
-"""Share by which it then runs faster until it is back in time: less than clients notice."""
+"""Relative speed-up until it is on time again, too small for clients to notice."""
 
 _WINDOW = 5.0
-"""Over how long it is judged whether the field keeps its speed [s]."""
+"""Time over which the field's speed is measured [s]."""
 
 _SLOW = 0.98
 """A field that keeps less than this share of its speed is slow."""

@@ -30,7 +30,7 @@ class ServedReferee:
         before = self.referee.game
         truth = self._field.truth()
         decision = self.referee.update(truth)
-        # The state names those that are still to be told, the newest last.
+        # The state lists the events still to be sent, the newest last.
         epoch = timestamp - truth.time
         self._events += [write_event(event, epoch, SOURCE) for event in decision.events]
         del self._events[: -len(decision.game.events) or None]

@@ -222,7 +222,7 @@ class ServedField:
 
 
 def line_up(field: FieldGeometry, robots: int) -> Placement:
-    """Return so many robots a team in their own halves, facing the ball in the centre."""
+    """Return this many robots per team in their own halves, facing the ball in the centre."""
     if not 0 <= robots <= TEAM_SIZE:
         raise ValueError(f"a team has up to {TEAM_SIZE} robots, not {robots}")
     placement = Placement()

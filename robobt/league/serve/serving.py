@@ -31,7 +31,7 @@ def served_scenario(
 def served_line_up(
     field: FieldGeometry, robots: int, simulator: str = "grsim", realism: str | None = None, seed: int = 0
 ) -> ServedField:
-    """Return a field with so many robots a team, lined up in their own halves.
+    """Return a field with this many robots per team, lined up in their own halves.
 
     Raises:
         KeyError: no such preset or level.

@@ -31,7 +31,7 @@ class WatchedField:
         server.tell(paused=False, speed=1.0, movable=True, orders=False, plays=[], over=None, span=None)
 
     def __call__(self, field: ServedField) -> None:
-        """Do what viewers ask for, and show what there is now."""
+        """Carry out viewers' requests, and show the present state."""
         while not self._server.inbox.empty():
             self._do(self._server.inbox.get_nowait()[0], field)
         for move in self._grip.moves(field.time):
@@ -45,7 +45,7 @@ class WatchedField:
         capture.tick(truth)
 
     def _captured(self, truth: Frame, period: float) -> Capture:
-        """Return what captures the field, another one where a robot has come that was never there."""
+        """Return the capture of the field, a new one if a robot has appeared for the first time."""
         seen = self._robots.union(truth.robots())
         if self._capture is None or seen != self._robots:
             self._robots = seen

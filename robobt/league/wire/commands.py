@@ -59,7 +59,7 @@ class BallTeleport:
 
 @dataclass(slots=True)
 class Request:
-    """What a packet asks of a simulator.
+    """The requests in a packet to a simulator.
 
     ``errors`` holds code and message of what is not supported.
     """

@@ -30,7 +30,7 @@ from robobt.world.state import Frame
 _MM = 1000.0
 
 _KICK_TIMEOUT = 10.0
-"""A restart that has not been taken by then is over, where the controller does not tell the time left [s]."""
+"""Time after which an untaken restart is over, if the controller does not send the time left [s]."""
 
 _RESTARTS = {
     RefereeCommand[f"{prefix}_{team.name}"]: (restart, team)
@@ -130,8 +130,8 @@ class RefereeFollower:
         if message.HasField("blue_team_on_positive_half"):
             self.blue_on_positive_half = message.blue_team_on_positive_half
         upcoming = command_of(message.next_command) if message.HasField("next_command") else None
-        # A restarted controller counts from 0 again, but with another timestamp. A goal is told as a command
-        # once, and then the command in force again, with the number of the goal.
+        # A restarted controller counts from 0 again, but with another timestamp. A goal is sent as a command
+        # once, followed by the command in force with the number of the goal.
         counter = (message.command_counter, message.command_timestamp, int(message.command), command)
         if command is not None and counter != self._counter:
             self._counter = counter

@@ -23,7 +23,7 @@ _MICROSECONDS = 1e6
 _NUMBERS = {team: number for number, team in TEAMS.items()}
 
 _OFFENDER = ("by_bot", "violator", "kicking_bot")
-"""How the messages call the robot that did it."""
+"""Names in messages of the robot that caused an event."""
 
 _TIMES = frozenset({"last_touch_by_team"})
 """Fields that are moments, in microseconds."""
@@ -46,7 +46,7 @@ def write_event(event: RefereeEvent, epoch: float, origin: str) -> GameEvent:
     if event.robot is not None:
         values |= dict.fromkeys(_OFFENDER, event.robot.number)
     if "by_team" in names:
-        # Required there, even where nobody did it.
+        # Required in the message even if no robot caused it.
         body.by_team = 0 if event.team is None else _NUMBERS[event.team]
     for name, value in (values | dict(event.details)).items():
         if name not in names or value is None:

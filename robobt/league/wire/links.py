@@ -23,7 +23,7 @@ _KEEP_ALIVE = 0.25
 
 
 class Link:
-    """A way to command robots; this one commands nobody, for a world that only observes.
+    """A link that commands robots; this base class commands none, for a world that only observes.
 
     Attributes:
         active: whether robots can be commanded, and robots and ball be placed.
@@ -83,9 +83,9 @@ class _SimulatorLink(Link):
 class GrSimLink(_SimulatorLink):
     """Commands and replacements to grSim's own port, with keep-alives to the control ports.
 
-    grSim stops the blue robots after every frame unless something arrives on its
-    yellow control port every second, and the yellow robots likewise; commands on
-    its own port do not count.
+    grSim stops the blue robots after every frame unless something arrives on its yellow control port every
+    second, and the yellow robots unless something arrives on its blue one; commands on its own port do not
+    count.
     """
 
     def __init__(

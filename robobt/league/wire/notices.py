@@ -8,7 +8,7 @@ _log = logging.getLogger(__name__)
 
 
 class Notices:
-    """Warns of each thing once."""
+    """Gives each warning once."""
 
     def __init__(self) -> None:
         self._told: set[str] = set()

@@ -29,9 +29,9 @@ _T = TypeVar("_T")
 
 @dataclass(slots=True)
 class PacketCounts:
-    """What happened to the packets of one port.
+    """Counts of the packets of one port.
 
-    Of a game controller's packets that are not accepted, what makes sense is used all the same.
+    Valid parts of a game controller's packets are used even if a packet is not accepted.
 
     Attributes:
         accepted: used.

@@ -1,4 +1,4 @@
-"""What makes sense in a game controller's message: the rest is left out, so that no HALT is lost with it."""
+"""Reads the valid part of a game controller's message, so that no HALT is lost in a damaged one."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ _TEAM_LIMITS = {
 """Largest values of a team's fields."""
 
 _MOST_FIELDS = 256
-"""So many fields of a broken message are looked at: messages have some 15, and one for each game event."""
+"""Number of fields read of a broken message: messages have about 15, and one for each game event."""
 
 # No longer sent, but found in old logs.
 _OUTDATED = {
@@ -70,18 +70,18 @@ _ENUMS = {
 _COMMAND = RefereeMessage.DESCRIPTOR.fields_by_name["command"].number
 
 _VARINT, _EIGHT, _LENGTH, _FOUR = 0, 1, 2, 5
-"""Types of fields on the wire: a number, 8 bytes, a length and so many bytes, 4 bytes."""
+"""Types of fields on the wire: a number, 8 bytes, a length with this many bytes, 4 bytes."""
 
 _TYPICAL = re.compile(rb"\x20([\x00\x01\x0c\x0d])\x28")
 """A command that stops the robots and the beginning of its counter, which every controller writes next."""
 
 
 class ReadMessage(NamedTuple):
-    """A message without what makes no sense.
+    """The valid part of a message.
 
     Attributes:
-        message: the fields that do make sense.
-        command: the command, None where no new one is told.
+        message: the valid fields.
+        command: the command, None without a new one.
         odd: names of the fields that are missing or made no sense.
     """
 
@@ -91,7 +91,7 @@ class ReadMessage(NamedTuple):
 
 
 def read_message(data: bytes, counts: PacketCounts) -> ReadMessage | None:
-    """Return what makes sense in a packet, None where nothing is of use.
+    """Return the valid part of a packet, or None if nothing is usable.
 
     A command to stop is found in whatever is around it. Any other counts only in a message that can be
     decoded and has the number by which a command is known to be new.

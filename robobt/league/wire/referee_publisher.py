@@ -27,7 +27,7 @@ class RefereePublisher:
         Args:
             game: the state.
             time: when it is sent [s].
-            events: the messages of the state's game events; without them only their kinds are told.
+            events: the messages of the state's game events; without them only their kinds are sent.
         """
         now = max(0, round(time * 1e6))
         last, current = self._last, (game.command, game.restart if game.stopped else None, game.restart_team)

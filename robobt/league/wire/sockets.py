@@ -69,7 +69,7 @@ class _UdpSocket(Closing):
             except (BlockingIOError, InterruptedError):
                 return
             except OSError:
-                # ECONNREFUSED: nobody received an earlier datagram of ours.
+                # ECONNREFUSED: an earlier datagram of ours had no receiver.
                 continue
             yield datagram
 
@@ -77,7 +77,7 @@ class _UdpSocket(Closing):
         try:
             self._socket.sendto(data, to)
         except OSError:
-            # Nobody listens, or the network is down: the next packet replaces this one anyway.
+            # There is no receiver, or the network is down; the next packet replaces this one anyway.
             return
 
     def _join(self, group: str, interface: str) -> None:

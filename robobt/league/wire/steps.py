@@ -33,7 +33,7 @@ class StepLink(Link):
         teams: whose robots are commanded.
 
     Attributes:
-        time: the clock; whoever uses this link lets it pass [s].
+        time: the clock, which the user of this link advances [s].
         stepped: how far the field has come since the link was made, never beyond ``time`` [s].
 
     Raises:
@@ -79,7 +79,7 @@ class StepLink(Link):
         self._contacts = []
 
     def step(self, seconds: float) -> list[CameraFrame]:
-        """Let time pass on the field, and return what the cameras see then.
+        """Advance the field's time, and return the cameras' frames then.
 
         Raises:
             StreamError: the simulator has gone, does not answer, or cannot make steps of this length.

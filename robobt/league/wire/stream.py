@@ -18,7 +18,7 @@ MAX_MESSAGE = 1 << 20
 _CHUNK = 65536
 
 _PATIENCE = 10.0
-"""The other side has stopped reading when it takes nothing for so long [s]."""
+"""Time without reading after which the other side counts as stopped [s]."""
 
 
 class StreamError(RobobtError, OSError):
