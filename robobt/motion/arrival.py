@@ -1,4 +1,4 @@
-"""When a robot can be somewhere: time-optimal motion in closed form, compiled.
+"""Arrival times of robots: time-optimal motion in closed form, compiled.
 
 Each of two axes, along the way and across it, accelerates and brakes at its limits; the limits
 are shared out so that both are done at the same time.
@@ -22,11 +22,11 @@ from robobt.world.records import BALL, MEETING, MOVER, Ball, Meeting, Mover, mov
 from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS
 
 STEP = 0.1
-"""From one place where a ball may be met to the next [s]."""
+"""Time between the places at which a ball may be met [s]."""
 
 _HALVINGS = 7
 _DRIFT = 0.15
-"""Sideways speed that does not count [m/s]."""
+"""Sideways speed that is ignored [m/s]."""
 _BODY = ROBOT_RADIUS + BALL_RADIUS
 _HORIZON = 4.0
 
@@ -35,7 +35,7 @@ _HORIZON = 4.0
 def axis_time(gap: float, speed: float, top: float, acceleration: float, braking: float) -> float:
     """Compute the least time to cover ``gap`` [m] along a line and to stop there, from ``speed`` [s].
 
-    A negative gap or speed is one the other way.
+    A negative gap or speed means the opposite direction.
     """
     if gap < 0.0:
         gap, speed = -gap, -speed
@@ -62,7 +62,7 @@ def axis_time(gap: float, speed: float, top: float, acceleration: float, braking
 
 @compiled
 def arrival_time(mover_: FloatArray, x: float, y: float, slack: float) -> float:
-    """Do what :func:`time_to` does, for a row of :func:`robobt.world.records.movers`."""
+    """Like :func:`time_to`, for a row of :func:`robobt.world.records.movers`. Return the time [s]."""
     return time_to(mover_.view(MOVER)[0], x, y, slack)
 
 
@@ -109,10 +109,11 @@ def time_to(mover: Mover, x: float, y: float, slack: float) -> float:
 
 @compiled
 def out_of_reach(mover: Mover, x: float, y: float, fastest: float, time: float) -> bool:
-    """Return whether a robot can surely not meet a ball at (x, y) by ``time`` [s].
+    """Return whether a robot certainly cannot meet a ball at (x, y) by ``time`` [s].
 
-    It never drives faster than ``fastest`` [m/s], nor gets there before one that need not mind its drift;
-    but for one that is too fast now, and covers the more ground the later it brakes.
+    This uses the bounds that the robot never drives faster than ``fastest`` [m/s] and is never earlier than
+    without drift; a robot that is too fast now is excepted, because it covers more ground the later it
+    brakes.
     """
     dx, dy = x - mover.x, y - mover.y
     gap = hypot(dx, dy)
@@ -136,8 +137,8 @@ def meetings(
 ) -> FloatArray:
     """Find where and when every robot can meet the ball first: (n, 3), the time [s] and the place [m].
 
-    A robot meets a rolling ball where it can stand in its way no later than the ball comes; where it
-    never can, where the ball comes to rest or leaves the field.
+    A robot meets a rolling ball at the first place where it can stand before the ball arrives; if there is
+    none, where the ball comes to rest or leaves the field.
 
     Args:
         movers_: as of :func:`robobt.world.records.movers`.
@@ -164,7 +165,7 @@ def meetings(
 def _path(
     ball: Ball, rolling: float, slide: float, roll: float, half_length: float, half_width: float
 ) -> Sequence[Meeting]:
-    """Return where the ball is from step to step, up to where it has to be met at the latest."""
+    """Return the ball's positions at each step, up to the last place to meet it."""
     path: Sequence[Meeting] = records(int(_HORIZON / STEP) + 2, MEETING)
     speed = hypot(ball.vx, ball.vy)
     ux, uy = 0.0, 0.0
@@ -192,7 +193,7 @@ def _meet(mover: Mover, path: Sequence[Meeting], meeting: Meeting) -> None:
     k, late = 0, 0.0
     while True:
         at = path[k]
-        # Most steps are out of its reach, which is seen without computing when it would be there.
+        # Most steps are out of its reach, which can be checked without computing the arrival time.
         if k == last or not out_of_reach(mover, at.x, at.y, fastest, at.time):
             late = time_to(mover, at.x, at.y, _BODY) - at.time
             if k == last or late <= 0.0:

@@ -13,7 +13,7 @@ _OLDEST = 0.2
 _KICKED = 2.0
 """A ball that speeds up faster than this has been hit [m/s^2]."""
 _GUESS = 0.8
-"""Share of its speed at which a ball will roll that was not seen being kicked."""
+"""Share of its speed at which a ball will roll if its kick was not seen."""
 
 
 @compilable
@@ -23,13 +23,13 @@ def rolling_after(
     """Return the speed at which a ball will roll, or its own when it seems to roll already [m/s].
 
     Args:
-        elapsed: since the frame before [s].
-        before: its speed in that frame [m/s].
-        rolling: what was returned for that frame [m/s].
-        speed: its speed now [m/s].
-        slide: its deceleration while it slides [m/s^2].
-        roll: the same while it rolls [m/s^2].
-        share: of a kick's speed at which the ball rolls.
+        elapsed: time since the last frame [s].
+        before: the ball's speed in the last frame [m/s].
+        rolling: the result for the last frame [m/s].
+        speed: the ball's speed now [m/s].
+        slide: the ball's deceleration while it slides [m/s^2].
+        roll: the ball's deceleration while it rolls [m/s^2].
+        share: share of a kick's speed at which the ball rolls.
     """
     if not 0.0 < elapsed < _OLDEST:
         return speed
@@ -42,7 +42,7 @@ def rolling_after(
 
 
 class Watch(Protocol):
-    """When the ball was seen last [s], how fast, and the speed at which it rolls [m/s]."""
+    """Time of the ball's last observation [s], its speed then, and the speed below which it rolls [m/s]."""
 
     time: float
     speed: float

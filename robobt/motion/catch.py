@@ -1,4 +1,4 @@
-"""Take a rolling ball softly: give way along its path, so that it meets the mouth slowly.
+"""Take a rolling ball softly: back off along its path, so that it meets the mouth slowly.
 
 A dribbler takes a ball that comes at it no faster than its ``receive_speed``; a faster one bounces off.
 """
@@ -13,19 +13,19 @@ from robobt.world.limits import RobotLimits
 from robobt.world.state import BallState, RobotState
 
 MOUTH = 0.0965
-"""From the robot's centre to that of a ball before its front [m]."""
+"""Distance from the robot's centre to a ball at its front [m]."""
 
 _SHARE = 0.8
-"""Share of its acceleration that a robot plans with to give way."""
+"""Share of its acceleration that a robot plans with to back off."""
 
 _SETTLES = 0.1
-"""Time constant with which the robot comes onto the line at last [s]."""
+"""Time constant of the final approach to the line [s]."""
 
 _LEAST = 0.3
-"""Share of its acceleration that a robot always gives way with."""
+"""Share of its acceleration that a robot always uses to back off."""
 
 _CARRY = 0.7
-"""How far the robot may brake with the ball [m]; the rules allow 1 m of dribbling."""
+"""Braking distance with the ball [m]; the rules allow 1 m of dribbling."""
 
 _SLACK = 0.8
 """Share of the catch speed at which the ball is met."""
@@ -44,7 +44,7 @@ def catch(me: RobotState, ball: BallState, limits: RobotLimits, period: float) -
     ux, uy = ball.vx / speed, ball.vy / speed
     dx, dy = ball.x - me.x, ball.y - me.y
     gap = max(0.0, -(dx * ux + dy * uy) - MOUTH)
-    # Beside the line, to the left as the ball rolls.
+    # Distance beside the line, to the left in the ball's direction.
     left = dy * ux - dx * uy
     side = 1.0 if left >= 0.0 else -1.0
     leftward = me.vy * ux - me.vx * uy
@@ -53,11 +53,11 @@ def catch(me: RobotState, ball: BallState, limits: RobotLimits, period: float) -
     gentle = _SHARE * limits.acceleration
     most = min(limits.max_speed, abs(left) / _SETTLES)
     across = side * approach_speed(side * left, side * leftward, most, gentle, gentle, stands)
-    # The wheels share what they can do: first onto the line, with the rest along it.
+    # The wheels' acceleration is shared: first onto the line, the remainder along it.
     across = leftward + min(step, max(-step, across - leftward))
     slow = _SLACK * me.limits.receives
     closing = sqrt(slow * slow + 2.0 * _SHARE * limits.acceleration * gap)
-    # No faster than it can stop again before it has carried the ball too far.
+    # The speed is limited so that the robot stops before it has carried the ball too far.
     most = min(limits.max_speed, sqrt(2.0 * _SHARE * me.limits.hold_acceleration * _CARRY))
     away = min(most, max(0.0, speed - closing))
     onward = me.vx * ux + me.vy * uy

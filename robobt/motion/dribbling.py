@@ -1,4 +1,4 @@
-"""How a robot may move without losing the ball from its dribbler."""
+"""Limits of motion without losing the ball from the dribbler."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ from robobt.world.limits import RobotLimits
 from robobt.world.state import RobotState
 
 MAX_TURN = 2.0
-"""Turning rate that every dribbler of the simulator's presets bears [rad/s]."""
+"""Turning rate at which every dribbler of the simulator's presets holds the ball [rad/s]."""
 MAX_ACCELERATION = 1.5
-"""Acceleration that the default dribbler bears while it turns [m/s^2]."""
+"""Acceleration at which the default dribbler holds the ball while turning [m/s^2]."""
 TURN_ACCELERATION = 15.0
-"""Change of the turning rate that the default dribbler bears [rad/s^2]."""
+"""Change of the turning rate at which the default dribbler holds the ball [rad/s^2]."""
 
 
 @lru_cache(maxsize=64)

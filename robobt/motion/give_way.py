@@ -1,4 +1,4 @@
-"""Not running into others, compiled: opponents while the ball is not in play, and mates.
+"""Compiled collision avoidance: opponents while the ball is not in play, and team-mates.
 
 Source of the limit: RoboCup SSL rules, chapter "Crashing": the relative velocity along the line of centres,
 1.5 m/s, of which the slower robot is free.
@@ -19,10 +19,10 @@ _CLOSING = 1.0
 """Closing speed at which opponents may touch [m/s]."""
 
 _GENTLY = 0.3
-"""The same of mates, who gain nothing by it [m/s]."""
+"""Closing speed at which team-mates may touch, who gain nothing by a collision [m/s]."""
 
 _BRAKING = 2.0
-"""How hard to brake for it, less than any robot can [m/s^2]."""
+"""Deceleration used, less than any robot is capable of [m/s^2]."""
 
 _LOOK = 1.5
 """Opponents with a wider gap are left out [m]."""
@@ -31,22 +31,22 @@ _IN_PLAY = 1.3
 """Closing speed at which opponents may touch while the ball is in play, some way below the rules' [m/s]."""
 
 _SLOWER = 0.4
-"""A robot that is so much slower than the opponent that comes at it is not at fault [m/s]."""
+"""A robot this much slower than an oncoming opponent is not at fault [m/s]."""
 
 BRAKES = 0.7
-"""Share of its braking that a robot uses for it in play."""
+"""Share of its braking that a robot uses in play."""
 
 
 def avoid_crash(frame: Frame, me: RobotState, order: RobotCommand) -> RobotCommand:
-    """Return the command without what would be the robot's crash into an opponent while the ball is in play.
+    """Return the command limited so that the robot does not crash into an opponent in play.
 
-    It may still drive at the ball between them: only how fast the two touch is limited, and an opponent
-    that comes on faster is at fault itself.
+    It may still drive at a ball between them: only the speed of contact is limited, and an opponent that
+    comes faster is at fault itself.
 
     Args:
         frame: what is on the field.
         me: the robot.
-        order: what it was to do; changed in place.
+        order: the command; changed in place.
     """
     if frame.game.in_play and (order.vx != 0.0 or order.vy != 0.0):
         velocity = float(order.vx), float(order.vy)
@@ -62,7 +62,7 @@ def _slowed(me_: FloatArray, velocity: Point, others_: FloatArray, braking: floa
 
 @compiled
 def slowed_in_play(me: Robot, velocity: Point, others: Sequence[Mover], braking: float) -> Point:
-    """Return the velocity ahead and to the left, slowed down towards every opponent that it would crash into.
+    """Return the velocity ahead and to the left, slowed down towards opponents that it would crash into.
 
     Args:
         me: the robot.
@@ -89,17 +89,17 @@ def slowed_in_play(me: Robot, velocity: Point, others: Sequence[Mover], braking:
 
 @compiled
 def slowed_towards(me: Robot, velocity: Point, others: Sequence[Mover], skip: int, mates: int) -> Point:
-    """Return the velocity ahead and to the left, slowed down towards every robot that it would run into.
+    """Return the velocity ahead and to the left, slowed down towards robots that it would run into.
 
-    Of two robots that drive at each other each lets the other be the faster one: neither drives on
-    faster than leaves room to brake, and an oncoming robot uses that room up.
+    If two robots drive at each other, each keeps enough distance to brake, and the oncoming robot uses up
+    that distance.
 
     Args:
         me: the robot.
         velocity: ahead and to the left, that it is to have [m/s].
         others: the robots.
         skip: the row among them of the robot itself, -1 for none.
-        mates: how many of them, the first ones, are of its own team.
+        mates: number of robots, the first ones, of its own team.
     """
     ahead, left = velocity
     c, s = cos(me.heading), sin(me.heading)

@@ -1,7 +1,7 @@
-"""Not touching the ball inside a defence area, however a robot gets there.
+"""Keeps field players from touching the ball inside a defence area.
 
-Source of the limits: RoboCup SSL rules, chapter "Offenses": who is not the goalkeeper may not touch the ball
-while wholly inside its own defence area, nor while partly inside the opponents'.
+Source of the limits: RoboCup SSL rules, chapter "Offenses": only the goalkeeper may touch the ball while
+fully inside its own defence area, and no robot while partly inside the opponents'.
 """
 
 from __future__ import annotations
@@ -13,40 +13,40 @@ from robobt.world.field import FieldGeometry
 from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS, Frame, RobotState
 
 _OUTSIDE = ROBOT_RADIUS + 0.02
-"""How far from an area a robot's centre stays [m]."""
+"""Distance of a robot's centre from an area [m]."""
 
 _NEAR, _AHEAD = 0.3, 0.4
-"""Only a ball matters that is no farther away, or that the robot may meet so soon [m, s]."""
+"""Distance of the ball, or time until the robot may meet it, within which this applies [m, s]."""
 
 _BRAKING = 2.0
-"""How hard to brake before an area, less than any robot can [m/s^2]."""
+"""Deceleration before an area, less than any robot is capable of [m/s^2]."""
 
 _FAR = 2.5
-"""From farther off any robot can brake before an area [m]."""
+"""Distance from which any robot can brake before an area [m]."""
 
 _WAY_OUT, _FASTEST_OUT = 8.0, 2.0
-"""A robot that was shoved in leaves that much faster for each metre, and so fast at the most [1/s, m/s]."""
+"""Speed per metre, and top speed, of a robot that leaves an area after being pushed in [1/s, m/s]."""
 
 _INSIDE = 0.02 - ROBOT_RADIUS
-"""A robot whose centre is so far from the area is about wholly inside [m]."""
+"""Distance of the centre from the area's edge at which a robot is about fully inside [m]."""
 
 _LAG = 0.2
-"""A robot that is so much too fast for braking in time leaves its speed along the area as it is [m/s]."""
+"""A robot too fast for braking in time by this much keeps its speed along the area [m/s]."""
 
 _CLEAR = ROBOT_RADIUS + BALL_RADIUS + 0.03
-"""Wholly inside, a robot gets away from a ball that is nearer to its centre [m]."""
+"""A robot fully inside moves away from a ball closer to its centre than this [m]."""
 
 
 def keep_out(frame: Frame, me: RobotState, order: RobotCommand) -> RobotCommand:
-    """Return the command without what takes a field player into a defence area while the ball is near.
+    """Return the command changed so that a field player stays out of a defence area while the ball is near.
 
-    One that is there already, because others shove it, is driven out: straight, or, where it is wholly
-    inside its own area and at the ball, away from that. Nothing is changed while the ball is not in play.
+    A robot that was pushed inside is driven out: straight, or away from the ball if it is fully inside its
+    own area and at the ball. Nothing changes while the ball is not in play.
 
     Args:
         frame: what is on the field.
         me: the robot.
-        order: what it was to do; changed in place.
+        order: the command; changed in place.
     """
     if not frame.game.in_play:
         return order
@@ -70,7 +70,7 @@ def keep_out(frame: Frame, me: RobotState, order: RobotCommand) -> RobotCommand:
     if lacking > 0.0:
         lag = outwards - (nx * me.vx + ny * me.vy)
         if lag > 0.0:
-            # What it takes to speed up along the area lacks for braking before it.
+            # Acceleration used along the area is not available for braking before it.
             along = (nx * (vy - me.vy) - ny * (vx - me.vx)) * min(1.0, lag / _LAG)
             vx, vy = vx + along * ny, vy - along * nx
         vx, vy = vx + lacking * nx, vy + lacking * ny
@@ -79,7 +79,7 @@ def keep_out(frame: Frame, me: RobotState, order: RobotCommand) -> RobotCommand:
 
 
 def _way_out(field: FieldGeometry, x: float, y: float) -> tuple[float, float, float]:
-    """Return how far off the area at +x is, negative inside, and the direction out of it, a unit vector."""
+    """Return the distance to the area at +x, negative inside, and the direction out of it, a unit vector."""
     front = field.half_length - field.defense_depth - x
     beside = abs(y) - field.defense_width / 2
     aside = 1.0 if y > 0.0 else -1.0

@@ -1,11 +1,11 @@
-"""How fast a skill drives: given limits or the robot's own, top speed scaled."""
+"""The driving limits of a skill: given limits or the robot's, with scaled top speed."""
 
 from __future__ import annotations
 
 from robobt.world.limits import RobotLimits
 
 MOST = 10.0
-"""Largest factor; beyond it a command is far from anything a robot can do."""
+"""Largest factor; beyond it a command is far beyond every robot's limits."""
 
 
 def check_factor(speed: float) -> float:

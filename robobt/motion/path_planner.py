@@ -1,10 +1,9 @@
 """Find the next waypoint around robots, ball and defence areas, and drive there.
 
-The plan is made anew every tick and only its first leg is driven. Obstacles are
-circles; a blocked path leaves along the tangent of the first circle on it, on
-the side with the shorter way round. Defence areas are passed by their corners.
-Robots that move are no obstacles to the path: the velocity along it is changed
-where it would meet one (:mod:`robobt.motion.velocity_obstacles`).
+The plan is recomputed in every tick and only its first leg is driven. Obstacles are circles; a blocked path
+leaves along the tangent of the first circle on it, on the side with the shorter way round. Defence areas are
+passed by their corners. Robots that move are no obstacles to the path: the velocity along it is changed where
+it would meet one (:mod:`robobt.motion.velocity_obstacles`).
 
 Source of the idea and the clearances: RoboBulls' published code (FPPA planner);
 tangents and side choice are robobt's.
@@ -52,23 +51,23 @@ from robobt.world.sketch import Sketch
 from robobt.world.state import ROBOT_RADIUS, Frame, RobotState
 
 PATHS, TARGETS = "paths", "targets"
-"""The layers of planned ways, and of where robots drive and kick to."""
+"""Drawing layers of planned paths, and of targets of driving and kicking."""
 
 _MOST_LEGS = 6
 
 _LOOK_AHEAD = 0.4
 """Longest time an obstacle is moved ahead along its velocity [s]."""
 _HEADSTRONG = 0.5
-"""How much longer the way round on that side may be [m]."""
+"""Additional length allowed for the present side of a detour [m]."""
 _STANDS = 0.25
-"""A slower robot is not under way yet [m/s]."""
+"""A robot slower than this has not started yet [m/s]."""
 _CORNER_SLACK = 0.05
-"""How far a waypoint may be cut or overshot [m]; decides the speed there."""
+"""Distance by which a waypoint may be cut or overshot [m]; it decides the speed there."""
 _CLEARANCE = 0.04
 """How much wider than the blocking circle a detour is, so that the next plan finds it free [m]."""
 _WIDEST_TURN = 0.9
 _MOST_ROUND = 4
-"""How many more circles are gone round on the way to the first."""
+"""Number of further circles avoided on the way to the first."""
 
 
 class _Circle(Protocol):
@@ -109,9 +108,9 @@ def travel(
         heading: where the mouth is to point [rad].
         limits: how to drive; usually ``me.limits``.
         final_speed: speed allowed at the target [m/s].
-        spare_mates: whether to give way to everybody, while the ball is in play too.
-        sketch: takes the whole way in the layer "paths", where somebody looks at it.
-        freedom: what the way has to keep clear of, and may enter: :class:`~robobt.motion.scene.Freedom`.
+        spare_mates: whether to avoid collisions with all robots, also while the ball is in play.
+        sketch: records the whole path in the layer "paths", if that layer is watched.
+        freedom: obstacles to avoid and areas that may be entered: :class:`~robobt.motion.scene.Freedom`.
     """
     goal = outside_stadium(frame, me, target)
     trip = trip_of(me, goal, heading, final_speed if goal is target else 0.0, **freedom)
@@ -142,8 +141,8 @@ def next_waypoint(
 ) -> tuple[Point, float]:
     """Return the next point of a free path to ``target``, and the speed at which to pass it [m/s].
 
-    The speed is 0 for ``target`` itself. Robots that move are gone round where they will be. An obstacle that
-    the robot already overlaps, or that ``target`` lies in, blocks only ways that lead deeper into it.
+    The speed is 0 for ``target`` itself. Moving robots are avoided at their predicted positions. An obstacle
+    that the robot already overlaps, or that contains ``target``, blocks only paths that lead deeper into it.
     The options are those of :class:`~robobt.motion.scene.Freedom`.
     """
     trip = trip_of(me, target, **freedom)
@@ -182,7 +181,7 @@ def _next(
 
 @compiled
 def _legs(trip_: FloatArray, scene_: FloatArray, movers_: FloatArray, own_: FloatArray) -> FloatArray:
-    """Return the points (n, 2) of the whole way as it would be driven if all else stood still.
+    """Return the points (n, 2) of the whole path, as if all other robots stood still.
 
     ``trip_`` is changed.
     """
@@ -250,9 +249,9 @@ def travel_law(
 def waypoint_law(
     trip: Trip, target: Point, scene: Scene, movers: Sequence[Mover], own: Limits, moving: bool
 ) -> tuple[float, float, float]:
-    """Return what :func:`next_waypoint` does for ``target``: x and y [m], and the speed there [m/s].
+    """Return the result of :func:`next_waypoint` for ``target``: x and y [m], and the speed there [m/s].
 
-    The rest is as for :func:`travel_law`; ``moving`` says whether robots that move are gone round too.
+    The rest is as for :func:`travel_law`; ``moving`` says whether moving robots are avoided too.
     """
     x, y, vx, vy = trip.me.x, trip.me.y, trip.me.vx, trip.me.vy
     goal_x, goal_y, corner_first = _round_areas(trip, target, scene)
@@ -268,7 +267,8 @@ def waypoint_law(
     for side in (1.0, -1.0):
         px, py, cost, arc, blocked = _detour((x, y), (goal_x, goal_y), hit, radius, side, side, circles)
         if blocked and stands:
-            # What is in the way may be passed on its other side: else the choice turns on which is met first.
+            # The blocking obstacle may be passed on its other side; otherwise the choice would depend on
+            # which is met first.
             between = _detour((x, y), (goal_x, goal_y), hit, radius, side, -side, circles)
             if between[2] < cost:
                 px, py, cost, arc, blocked = between
@@ -276,7 +276,7 @@ def waypoint_law(
             cost -= _HEADSTRONG
         gap = hypot(px - x, py - y)
         if gap > 0.0:
-            # Keep to the side one is already driving to.
+            # Keep the side that the robot already drives to.
             cost -= 0.15 * (vx * (px - x) + vy * (py - y)) / (gap * speed)
         if not is_open(trip, scene, px, py, scene.their_gap):
             cost += 10.0
@@ -289,7 +289,7 @@ def waypoint_law(
 
 @compiled
 def _round_areas(trip: Trip, target: Point, scene: Scene) -> tuple[float, float, bool]:
-    """Return the target, or the corner to go to first where a defence area is in the way; and if so."""
+    """Return the target, or the first corner if a defence area is in the way; and whether one is."""
     x, y = trip.me.x, trip.me.y
     if trip.placing > 0.0:
         return target[0], target[1], False
@@ -306,7 +306,7 @@ def _round_areas(trip: Trip, target: Point, scene: Scene) -> tuple[float, float,
 def _round_area(
     scene: Scene, x: float, y: float, gx: float, gy: float, gap: float
 ) -> tuple[float, float, bool]:
-    """Do what :func:`_round_areas` does for one defence area, at +x and grown by ``gap``, and (gx, gy)."""
+    """Like :func:`_round_areas`, for one defence area at +x grown by ``gap``, and the target (gx, gy)."""
     front = scene.half_length - scene.area_depth - gap
     if x <= front and gx <= front:
         return gx, gy, False
@@ -366,7 +366,7 @@ def _first_hit(
     end is shrunk too.
 
     Returns:
-        Its row, -1 where there is none, and its radius, shrunk [m].
+        Its row, -1 without one, and its shrunk radius [m].
     """
     dx, dy = gx - x, gy - y
     length = hypot(dx, dy)
@@ -421,7 +421,7 @@ def _detour(
         path plus a penalty for what else is in it, the angle turned there, and whether anything
         was in the way to the circle.
     """
-    # In a loop, not by calling itself: numba loads functions that do so from its cache broken.
+    # A loop instead of recursion, because numba's cache breaks recursive functions.
     costs, reaches, arcs = np.empty(_MOST_ROUND), np.empty(_MOST_ROUND), np.empty(_MOST_ROUND)
     x, y = start
     gx, gy = goal
@@ -448,7 +448,7 @@ def _detour(
             if _first_hit(corner_x, corner_y, gx, gy, others, True)[0] >= 0:
                 cost += 0.2
             break
-        # Something is in the way to the corner: round that first.
+        # An obstacle is in the way to the corner, so avoid it first.
         costs[n], reaches[n], arcs[n] = cost, reach, arc
         n += 1
         gx, gy, side = corner_x, corner_y, others_side
@@ -460,7 +460,7 @@ def _detour(
 
 @compiled
 def _without(circles: Sequence[_Circle], x: float, y: float) -> Sequence[_Circle]:
-    """Return the circles but those round (x, y)."""
+    """Return the circles except those around (x, y)."""
     rest: MutableSequence[_Circle] = records(len(circles), _CIRCLE)
     count = 0
     for circle in circles:

@@ -31,14 +31,14 @@ ROBOBULLS_LIMITS = RobotLimits(
     turn_acceleration=radians(1500.0),
     turn_braking=radians(100.0),
 )
-"""How RoboBulls' published code drives any robot (PilotOmni and config/motion.yaml)."""
+"""Driving limits of RoboBulls' published code (PilotOmni and config/motion.yaml)."""
 
 
 _STRAIGHT = 0.25
 """Sideways motion that stops within this share of a period is left out of the plan."""
 
 _ACROSS_FIRST = 1.5
-"""How much the motion across is preferred; found by trial over random starts."""
+"""Preference of the motion across; found by trial over random starts."""
 
 
 def drive(
@@ -51,11 +51,10 @@ def drive(
 ) -> RobotCommand:
     """Compute the command that brings ``me`` one control period nearer to a pose.
 
-    An acceleration in ``limits`` at or above the robot's own is left to the
-    robot, which knows its velocity without delay; a lower one is kept here, by
-    asking for no velocity that lies too far from the present one. So is the
-    robot's own where it reacts late: the wheels of such a robot take a command at
-    its word, and slip.
+    If the acceleration in ``limits`` is at or above the robot's own, the robot enforces it, because it knows
+    its velocity without delay. A lower one is enforced here, by limiting the change of the commanded
+    velocity. So is the robot's own limit if the robot reacts late, because its wheels then follow commands
+    exactly and slip.
 
     Args:
         me: the robot.
@@ -105,8 +104,8 @@ def travel_time(distance: float, speed: float, limits: RobotLimits) -> float:
 def roughly(heading: float, wanted: float, slack: float) -> float:
     """Return the heading nearest to the present one that is within ``slack`` of the wanted one [rad].
 
-    A robot that only has to look somewhere thereabouts stays as it is while that moves a little, where it
-    would swing to and fro at exactly so.
+    A robot that only has to face a point roughly keeps its heading while the point moves a little; facing it
+    exactly would make the robot swing back and forth.
     """
     error = wrap_angle(wanted - heading)
     if abs(error) <= slack:
@@ -263,12 +262,12 @@ def approach_speed(
     The robot is taken to change to that speed at its limit and to hold it for
     the rest of the period. Unit of length is free: metres or radians.
 
-    ``distance`` is what is left, not negative, ``speed`` that towards the target now, ``cruise`` the most to
-    return; of angles as of ways.
+    ``distance`` is the remaining distance, not negative, ``speed`` the present speed towards the target,
+    ``cruise`` the largest result; it works for angles and distances.
     """
     v = speed if speed > 0.0 else 0.0
-    # Way made within the period while braking to w, and from w to rest:
-    # w * period + (v - w)^2 / (2 * braking) + w^2 / (2 * braking).
+    # Distance within the period while braking to w, and from w to rest: w * period + (v - w)^2 / (2 *
+    # braking) + w^2 / (2 * braking).
     if v * period + v * v / (2.0 * braking) > distance:
         half = 0.5 * (v - braking * period)
         root = half * half - 0.5 * v * v + braking * distance
@@ -283,7 +282,7 @@ def approach_speed(
 
 @compilable
 def stop_time(distance: float, speed: float, a: float, b: float, cruise: float) -> float:
-    """Do what :func:`travel_time` does, with acceleration a, braking b and top speed."""
+    """Like :func:`travel_time`, with acceleration a, braking b and top speed."""
     begun = 0.0
     if speed < 0.0:
         begun, distance, speed = -speed / b, distance + speed * speed / (2.0 * b), 0.0
@@ -321,9 +320,9 @@ def _turning_in(
 ) -> Point:
     """Compute the velocity ahead and across for a robot that does not drive straight at its target.
 
-    Both parts share what the wheels can do in proportion to the time each needs.
-    Commanding the target speed ahead regardless would leave nothing to stop the
-    motion across, and the robot would circle its target for ever.
+    Both parts share the wheels' acceleration in proportion to the time each needs. Always commanding the
+    target speed ahead would leave no acceleration to stop the motion across, and the robot would circle its
+    target forever.
     """
     time_ahead = max(1e-6, stop_time(distance, ahead, given.acceleration, given.braking, top))
     drift = abs(across)
@@ -337,7 +336,7 @@ def _turning_in(
     rate = acceleration if change > 0.0 and ahead >= 0.0 else braking
     step = min(abs(change), rate * share_ahead * period)
     step_across = min(drift, sideways * share_across * period)
-    # The direction of the change is what matters; how far it gets is the robot's affair.
+    # Only the direction of the change matters; the robot limits its size.
     stretch = min(abs(change) / step if step > 0.0 else inf, drift / step_across)
     change = step * stretch if change > 0.0 else -step * stretch
     across -= step_across * stretch if across > 0.0 else -step_across * stretch

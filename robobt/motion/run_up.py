@@ -13,12 +13,12 @@ RUN_UP_SPEED = 1.5
 """Speed relative to the ball at which the robot meets it [m/s]."""
 
 _SHORT_OF_CONTACT = 0.12
-"""Distance from the ball by which the robot has to be on the line [m]."""
+"""Distance from the ball at which the robot has to be on the line [m]."""
 _ON_LINE = 0.01
 _STEADY = 0.15
-"""A robot nearer to the line than the one [m] and slower across it than the other [m/s] is on it."""
+"""A robot closer to the line than this [m] and slower across it than this [m/s] is on the line."""
 _SHARES = (0.3, 0.9)
-"""Least and most share of the acceleration that goes across the line."""
+"""Least and greatest share of the acceleration used across the line."""
 
 
 def run_up(

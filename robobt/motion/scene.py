@@ -1,7 +1,7 @@
-"""What a plan of :mod:`robobt.motion.path_planner` depends on, as numbers, and where robots may stand.
+"""The input of :mod:`robobt.motion.path_planner` as numbers, and the places where robots may stand.
 
-It comes in arrays that are made once a frame and once a call: one call of compiled code costs a few
-microseconds, and a plan takes a dozen steps.
+The arrays are made once per frame and once per call, because one call of compiled code costs a few
+microseconds and a plan takes a dozen steps.
 """
 
 from __future__ import annotations
@@ -19,20 +19,20 @@ from robobt.world.rules import AREA_DISTANCE, STOP_DISTANCE, STOP_SPEED, in_area
 from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS, Frame, RobotState
 
 AREA_GAP = 0.02
-"""From a defence area to a robot that may not enter it [m]."""
+"""Distance from a defence area to a robot that may not enter it [m]."""
 
 BALL_GAP = 0.01
 """Gap to an avoided ball below which a way is blocked [m]. Source: RoboBulls' published code."""
 
 _WALL_GAP = 0.02
 _INSIST = 1.5
-"""For how long a robot that the match waits for tries one way round [s]."""
+"""How long a robot that the match waits for tries one way round [s]."""
 
 _EVADES = SCENE.fields["evades"][1] // 8 if SCENE.fields else 0
 
 
 class Freedom(TypedDict, total=False):
-    """What a way has to keep clear of, and what it may enter.
+    """The obstacles that a path has to avoid, and the areas that it may enter.
 
     Attributes:
         avoid_robots: whether to go round other robots; True unless given.
@@ -59,7 +59,7 @@ def scene_of(frame: Frame) -> FloatArray:
     extra = AREA_DISTANCE if stopped or game.restart is not None else AREA_GAP
     insists = 0.0
     if late is not None and late < 0.0 and not in_play:
-        # The match waits; a robot that sways between two like ways tries one for a while, then the other.
+        # The match waits: a robot that sways between two similar paths tries one for a while, then the other.
         insists = 1.0 if int(frame.time / _INSIST) % 2 == 0 else -1.0
     scene = (
         field.half_length,
@@ -87,7 +87,7 @@ def scene_of(frame: Frame) -> FloatArray:
 
 
 def evade(frame: Frame, evades: bool) -> None:
-    """Have ways in this frame evade robots that move, or go round where those will be."""
+    """Make paths in this frame evade moving robots by velocity, or lead round their predicted positions."""
     scene_of(frame)[_EVADES] = evades
 
 
@@ -132,7 +132,7 @@ def allowed_place(trip: Trip, scene: Scene) -> Point:
         x, y = _away_from_ball(trip, scene)
     most_y = scene.half_width + scene.margin - ROBOT_RADIUS - _WALL_GAP
     y = min(most_y, max(-most_y, y))
-    # Behind the goal line there is the goal or a strip too narrow to be of use near it.
+    # Behind the goal line there is only the goal or a strip too narrow to be useful.
     beside_goal = abs(y) > scene.half_goal + ROBOT_RADIUS + _WALL_GAP
     behind = scene.behind - ROBOT_RADIUS - _WALL_GAP if beside_goal else 0.0
     most_x = scene.half_length + behind
@@ -200,7 +200,7 @@ def is_open(trip: Trip, scene: Scene, x: float, y: float, their_gap: float) -> b
 
 @compiled
 def from_ball(trip: Trip, scene: Scene) -> float:
-    """Return how far its centre has to stay from the ball's, 0 where that is no obstacle [m]."""
+    """Return the least distance of its centre from the ball's [m], 0 if the ball is no obstacle."""
     if scene.keeps_off > 0.0:
         return ROBOT_RADIUS + BALL_RADIUS + STOP_DISTANCE
     return ROBOT_RADIUS + BALL_RADIUS + trip.ball_gap if trip.ball_gap >= 0.0 else 0.0

@@ -1,4 +1,4 @@
-"""The stadium round the way of a ball that the opponents place: nobody else may be in it.
+"""The stadium around the path of a ball that the opponents place, which other robots must leave.
 
 Source: RoboCup SSL rules, chapter "Ball Placement": 0.5 m from the segment between ball and spot.
 """
@@ -17,17 +17,17 @@ from robobt.world.rules import STOP_DISTANCE
 from robobt.world.state import ROBOT_RADIUS, Frame, RobotState
 
 _MARGIN = 0.06
-"""By how much a robot stays outside, because it does not stop at once [m]."""
+"""Margin outside it, because a robot does not stop at once [m]."""
 
 _CLEAR = 0.1
-"""How far beyond that a robot inside is sent, so that it does not creep [m]."""
+"""Distance beyond the margin of a leaving robot's target, so that it does not creep [m]."""
 
 
 def outside_stadium(frame: Frame, me: RobotState, goal: Point) -> Point:
     """Return ``goal``, or where to go first while the opponents place the ball between.
 
-    A robot inside goes straight out of the stadium unless ``goal`` is outside; any other stays
-    where it is until the ball has passed, rather than go round.
+    A robot inside goes straight out of the stadium unless ``goal`` is outside; any other robot waits until
+    the ball has passed instead of driving round.
     """
     game = frame.game
     spot = game.placement

@@ -1,8 +1,8 @@
-"""The velocity nearest to the one wanted that meets no moving robot soon, compiled.
+"""Compiled velocity obstacles: the velocity nearest to the wanted one that avoids moving robots.
 
-Robots that stand are gone round. A way round the place where one that moves is, or will be at some moment,
-leads into it at another. So a fan of velocities about the one wanted is looked at, each judged by when it
-brings the robot too near to anybody who goes on as now.
+Standing robots are avoided by the path. A path round a moving robot's position at one moment may lead into it
+at another, so a fan of velocities around the wanted one is tried, each rated by the time until the robot is
+too near to a robot with constant velocity.
 
 Sources: Fiorini and Shiller, "Motion planning in dynamic environments using velocity obstacles" (1998); the
 cost of a velocity is that of van den Berg, Lin and Manocha, "Reciprocal velocity obstacles" (2008).
@@ -22,25 +22,25 @@ from robobt.world.records import Limits, Mover, Robot, Scene, Trip
 from robobt.world.state import ROBOT_RADIUS
 
 MOVES = 0.2
-"""A robot that is faster is evaded, a slower one is gone round [m/s]."""
+"""A robot faster than this is evaded by velocity, a slower one is avoided by the path [m/s]."""
 
 STANDS_APART, MOVES_APART = 2.0 * ROBOT_RADIUS + 0.03, 2.0 * ROBOT_RADIUS + MARGIN
-"""Centres of the robot and of one that stands, or moves, are not to come nearer [m]."""
+"""Least distances between centres, to standing and to moving robots [m]."""
 
 _HORIZON = 1.0
-"""For how long a velocity has to be free [s]."""
+"""Time for which a velocity has to be free [s]."""
 
 _PENALTY = 0.67
-"""A velocity that stays free for t costs this over t, one of the same speed the other way round 2 [s]."""
+"""A velocity that stays free for t costs this divided by t; the opposite velocity costs 2 [s]."""
 
 _WAYS, _SLOW_WAYS = 16, 8
-"""How many directions are tried at the speed wanted and at half of it, evenly round."""
+"""Number of evenly spaced directions tried at the wanted speed and at half of it."""
 
 _SLOW = 0.1
-"""Who hardly moves evades nobody [m/s]."""
+"""A robot slower than this does not evade [m/s]."""
 
 _SOON = 0.05
-"""Sooner than this is all the same [s]."""
+"""Times shorter than this count as equal [s]."""
 
 
 class _Obstacle(Protocol):
@@ -66,10 +66,10 @@ def clear_velocity(
     wanted: Point,
     goal: Point,
 ) -> Point:
-    """Return ``wanted``, or a velocity near it that leads into nobody where that one meets who moves.
+    """Return ``wanted``, or a collision-free velocity near it if ``wanted`` leads into a moving robot.
 
-    The ball is in the way where it is to be avoided, and nothing is beyond the goal. Velocities from which
-    the robot could not stop before a line that it may not cross are left out.
+    The ball counts as an obstacle if it is to be avoided; nothing beyond the goal counts. Velocities from
+    which the robot could not stop before a line that it may not cross are left out.
 
     Args:
         trip: the robot.
@@ -96,7 +96,7 @@ def clear_velocity(
     if _free_for(near, me, wanted, faster, slower, lag) >= needed:
         return wanted
     bounded = is_open(trip, scene, x, y, scene.their_gap)
-    # What is open leaves out a little of their area's gap, which is the rules' in a restart.
+    # The check leaves out a little of the gap to their area, which the rules demand in a restart.
     their_gap = scene.their_gap + 2.0 * AREA_GAP if scene.in_play == 0.0 else scene.their_gap
     best, least = wanted, inf
     for way in range(_WAYS + _SLOW_WAYS + 1):
@@ -120,13 +120,13 @@ def clear_velocity(
 
 @compiled
 def is_moving(mover: Mover) -> bool:
-    """Return whether a robot is evaded, and not gone round."""
+    """Return whether a robot is evaded by velocity instead of by the path."""
     return mover.vx * mover.vx + mover.vy * mover.vy > MOVES * MOVES
 
 
 @compiled
 def _any_moves(movers: Sequence[Mover], skip: int, x: float, y: float, speed: float) -> bool:
-    """Return whether anybody near moves: most often nobody does."""
+    """Return whether any robot nearby moves; usually none does."""
     for i, mover in enumerate(movers):
         if is_moving(mover) and i != skip and _is_near(mover, x, y, speed):
             return True
@@ -144,7 +144,7 @@ def _is_near(mover: Mover, x: float, y: float, speed: float) -> bool:
 def _obstacles(
     trip: Trip, scene: Scene, movers: Sequence[Mover], speed: float, needed: float, goal: Point
 ) -> Sequence[_Obstacle]:
-    """Return who is near, and the ball where it is to be avoided; none reaches to where the robot is to get.
+    """Return the nearby robots, and the ball if it is to be avoided, shrunk so that none covers the goal.
 
     ``speed`` is that wanted [m/s], ``needed`` how long a velocity has to be free [s].
     """
@@ -175,7 +175,7 @@ def _obstacles(
 def _free_for(
     near: Sequence[_Obstacle], me: Robot, then: Point, faster: float, slower: float, lag: float
 ) -> float:
-    """Return how soon the robot, changing its velocity to ``then``, is too near to another [s].
+    """Return the time until the robot, changing its velocity to ``then``, is too near to another [s].
 
     While it changes it is taken to drive with the mean of both.
     """

@@ -23,14 +23,14 @@ from robobt.world.geometry import FloatArray
 from robobt.world.limits import RobotLimits
 
 Solver = Literal["compiled", "pymunk"]
-"""What moves the bodies and resolves contacts."""
+"""The solver that moves the bodies and resolves contacts."""
 
 
 class Arenas:
     """The physics core: ``n`` copies of a field with ``len(limits)`` robots each and a ball.
 
     A match is one arena; vectorised training is hundreds. All arrays are views
-    that stay valid. What happens in an arena depends on nothing but itself, bit for bit.
+    that stay valid. Each arena is independent of the others, bit for bit.
 
     Args:
         field: dimensions.
@@ -38,9 +38,9 @@ class Arenas:
         settings: of the simulator.
         period: control period [s].
         n: number of arenas.
-        keep_history: whether to keep what is in ``history``.
+        keep_history: whether to fill ``history``.
         solver: ``pymunk`` has a space for each arena, in which a match is played; ``compiled`` does the same
-            over arrays (:mod:`robobt.sim.contacts.solver`), for arenas by the hundred.
+            over arrays (:mod:`robobt.sim.contacts.solver`), for hundreds of arenas.
 
     Raises:
         ValueError: no such solver.
@@ -48,17 +48,17 @@ class Arenas:
     Attributes:
         robots: (n, R, 6) x, y, heading, vx, vy, omega [m, rad, m/s, rad/s].
         balls: (n, 4) x, y, vx, vy [m, m/s].
-        flight: (n, 3) the balls' heights, 0 on the ground, how fast they rise, and how often
-            they touched down since the kick [m, m/s].
-        contact: (n, R) whether the ball lies in the robot's mouth.
+        flight: (n, 3) the balls' heights [m], 0 on the ground, vertical speeds [m/s], and numbers of
+            touch-downs since the kick.
+        contact: (n, R) whether the ball is in the robot's mouth.
         kicked: (n, R) whether the robot kicked during the last step.
         touch: (n,) index of the last robot to touch the ball, -1 before the first.
         history: (sub_steps, n, R + 1, 6) states after every sub-step, the
             ball's last, with z and vz for heading and omega; empty unless
             ``keep_history``.
-        sub_steps: physics steps a control period.
+        sub_steps: physics steps per control period.
         delay: from a command to its effect [s].
-        late: whether that is after the period in which the command was given.
+        late: whether the effect comes after the period in which the command was given.
     """
 
     def __init__(
@@ -107,7 +107,7 @@ class Arenas:
         self.history: FloatArray = self._arrays.history
         self._arrays.bodies[:, :count, :2] = np.array(until_placed(count)).reshape(count, 2)
         self.delay = settings.realism.command_delay
-        if settings.wheels is None:  # which react late by themselves
+        if settings.wheels is None:  # which react late anyway
             self.delay += settings.limits.reaction
         delay = round(self.delay / self.dt)
         self.switch[:] = delay % self.sub_steps
@@ -147,7 +147,7 @@ class Arenas:
         return switch
 
     def place(self, robots: ArrayLike, balls: ArrayLike, arenas: ArrayLike | None = None) -> None:
-        """Set arenas up anew: positions and velocities, no command on its way.
+        """Reset arenas: set positions and velocities, and drop commands on their way.
 
         Args:
             robots: (m, R, 3) x, y, heading, at rest, or (m, R, 6) with vx, vy, omega.
@@ -187,17 +187,17 @@ class Arenas:
         z: float = 0.0,
         vz: float = 0.0,
     ) -> None:
-        """Put one arena's ball somewhere; the robots go on as they were.
+        """Place one arena's ball; the robots continue unchanged.
 
         Args:
             arena: its index.
-            x: where [m].
-            y: where [m].
-            vx: its velocity, at rest by default [m/s].
-            vy: likewise.
-            rolls: whether a moving ball rolls; one that does not slides, as after a kick.
-            z: its height above where it lies [m].
-            vz: how fast it rises [m/s].
+            x: x coordinate of the place [m].
+            y: y coordinate of the place [m].
+            vx: velocity along x, at rest by default [m/s].
+            vy: velocity along y, at rest by default [m/s].
+            rolls: whether a moving ball rolls; otherwise it slides, as after a kick.
+            z: height above the ground [m].
+            vz: vertical speed [m/s].
         """
         count = self.contact.shape[1]
         self._arrays.drives.view(DRIVE)["hinge"]["held"][arena] = 0.0
@@ -212,12 +212,12 @@ class Arenas:
         self._write()
 
     def place_robot(self, arena: int | IntArray, robot: int | IntArray, state: ArrayLike) -> None:
-        """Put one robot of an arena somewhere; the ball and the others go on as they were.
+        """Place one robot of an arena; the ball and the other robots continue unchanged.
 
         Args:
-            arena: its index; (m,) to put m robots anywhere.
-            robot: the robot's index in it; likewise.
-            state: (6,) x, y, heading, vx, vy, omega [m, rad, m/s, rad/s]; likewise (m, 6).
+            arena: index of the arena; (m,) to place m robots.
+            robot: index of the robot in the arena; (m,) to place m robots.
+            state: (6,) x, y, heading, vx, vy, omega [m, rad, m/s, rad/s]; (m, 6) to place m robots.
         """
         self._read()
         self._arrays.bodies[arena, robot] = state
@@ -235,7 +235,7 @@ class Arenas:
                 body.moment = moment_of_inertia(mass)
 
     def step(self, commands: FloatArray) -> None:
-        """Let one control period pass under ``commands``.
+        """Advance one control period with ``commands``.
 
         Args:
             commands: (n, R, 6) vx, vy, omega in the robots' frames, kick speed
@@ -253,7 +253,7 @@ class Arenas:
         control_tick(self._passed, self._pipeline[0], self._pipeline[1], self.sub_steps, self.dt)
 
     def step_bare(self) -> None:
-        """Step pymunk's spaces alone, by its own call: what benchmarks compare with."""
+        """Step only pymunk's spaces, by pymunk's own call, as a reference for benchmarks."""
         for space in self._spaces:
             for _ in range(self.sub_steps):
                 space.step(self.dt)

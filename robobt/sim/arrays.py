@@ -49,7 +49,7 @@ class ArenaArrays(NamedTuple):
     calls: Calls
 
     def plain(self) -> ArenaArrays:
-        """Return the same as plain tuples, whose type numba finds in half the time."""
+        """Return the arrays as plain tuples, whose type numba determines in half the time."""
         return cast(ArenaArrays, (*self[:-2], tuple(self.contacts), tuple(self.calls)))
 
 

@@ -14,7 +14,7 @@ from robobt.world.field import FieldGeometry
 from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS
 
 SOFT = 0.008
-"""How far inside a robot's core, where there is one, the ball meets something hard [m]."""
+"""Depth inside a robot's core, if it has one, at which the ball meets a solid body [m]."""
 
 _WALL = 0.02
 """Thickness of a goal's walls in the rules [m]."""
@@ -23,14 +23,14 @@ BEYOND = 0.5
 """Thickness of the walls around the field [m]."""
 
 SLOP = 1e-4
-"""Overlap that is left as it is [m]; Chipmunk's default is made for pixels."""
+"""Overlap that is not corrected [m]; Chipmunk's default is made for pixels."""
 
 _HULL_CORNERS = 24
 _PLATE = 0.006
 """Thickness of the plate that forms a robot's flat front [m]."""
 
 _RECESS = 0.025
-"""How far behind the front of a mouth between jaws the hull begins [m]."""
+"""Distance from the front of a mouth between jaws to the hull behind it [m]."""
 
 # Collision categories: robots meet robots as discs and the ball with their hull.
 _DISC, _HULL, _BALL, _STATIC = 1, 2, 4, 8
@@ -102,7 +102,7 @@ def fill(
         _finish(disc, bounce**0.5, rub**0.5, _DISC, _DISC | _STATIC)
         space.add(robot, disc, *shapes)
         bodies.append(robot)
-    # Spin about the vertical axis matters to nobody: the ball cannot turn.
+    # The ball cannot turn, because spin about the vertical axis has no effect.
     ball = pymunk.Body(settings.ball.mass, float("inf"))
     ball.position = (0.0, 0.0)
     round_ = pymunk.Circle(ball, BALL_RADIUS)
@@ -113,7 +113,7 @@ def fill(
 
 
 def until_placed(robots: int) -> list[tuple[float, float]]:
-    """Return where robots are until they are placed, each somewhere of its own, so that none overlap [m]."""
+    """Return initial places of robots, apart from each other, until they are placed [m]."""
     return [(0.0, 3 * ROBOT_RADIUS * (i + 1)) for i in range(robots)]
 
 
@@ -179,7 +179,7 @@ def _plate(face: float, half: float | None) -> list[tuple[float, float]]:
 
 
 def _jaws(body: BodySettings, material: tuple[float, float]) -> list[Outline]:
-    """Return what stands beside a mouth that lies back, with rounded corners: one part a side, or none."""
+    """Return the jaws with rounded corners beside a recessed mouth: one part per side, or none."""
     if body.jaws is None:
         return []
     rounding = body.jaws.rounding

@@ -1,13 +1,13 @@
-"""A ball in the air: it falls, hops, and passes over what it is higher than.
+"""A ball in the air: it falls, hops, and passes over lower objects.
 
 The hops are those of the league's model chip_fixed_loss: at a touch-down the ball keeps a
 share of its speed along the ground, a smaller one at the first than at the others, and
 rises with a share of the speed with which it fell. Each step is the closed form, with the
 touch-down at its exact time. Once the next hop would be lower than 1 cm the ball rolls.
 
-pymunk's space is flat. A ball below the robots' height is in it as on the ground, and
-meets what it meets there. A higher one is kept out of it, meets only the walls around the
-field, which end nowhere, and hops on the robot or goal on which it falls.
+pymunk's space is flat. A ball below the robots' height is treated as on the ground, with the same contacts. A
+higher ball is kept out of the space, meets only the walls around the field, which have unlimited height, and
+hops on a robot or goal on which it falls.
 """
 
 from __future__ import annotations
@@ -21,10 +21,10 @@ from robobt.world.compiled import compiled_lean
 from robobt.world.state import BALL_RADIUS, ROBOT_HEIGHT, ROBOT_RADIUS
 
 _LAST_APEX = 0.01
-"""A hop that would be lower than this is none. Source: Sumatra's model of a chip [m]."""
+"""Lowest hop; below it the ball rolls [m]. Source: Sumatra's model of a chip."""
 
 _STADIUM = 4
-"""How many of an arena's walls surround the field; the others are the goals'."""
+"""Number of an arena's walls around the field; the others belong to the goals."""
 
 _LEFT, _AHEAD = 0, 2
 """Which of them bound y and x."""
@@ -44,7 +44,7 @@ def _above_something(arena: Arena) -> bool:
 
 @compiled_lean
 def fly(arena: Arena, dt: float) -> bool:
-    """Let the ball fly for one step; return whether it is above robots and goals all the time.
+    """Let the ball fly for one step; return whether it stays above robots and goals.
 
     A touch-down changes its velocity along the ground and its rolling.
     """

@@ -1,6 +1,6 @@
-"""What ties robots together that hold the same ball: grSim hinges it to each of them.
+"""The joint between robots that hold the same ball: grSim hinges the ball to each of them.
 
-Two such robots turn about the ball and drive where both agree; neither gets away with it.
+Two such robots turn about the ball and move only as both drive; neither can leave with it.
 Source: two robots face to face in the running grSim, which the tests repeat.
 """
 
@@ -20,7 +20,7 @@ _SOFTNESS = 0.2
 
 @compiled_lean
 def take_hold(body: Body, robot: Body, hinge: Hinge) -> None:
-    """Hinge the ball to a robot where it lies."""
+    """Hinge the ball to a robot at its present place."""
     c, s = cos(robot.heading), sin(robot.heading)
     px, py = body.x - robot.x, body.y - robot.y
     hinge.held, hinge.ahead, hinge.aside = 1.0, c * px + s * py, c * py - s * px
@@ -28,7 +28,7 @@ def take_hold(body: Body, robot: Body, hinge: Hinge) -> None:
 
 @compiled_lean
 def tie(robots: Records[Body], drives: Records[Drive], carrier: int, w: Wheels, dt: float) -> None:
-    """Let no robot that holds the ball leave the one that carries it.
+    """Keep all robots that hold the ball together with the robot that carries it.
 
     Args:
         robots: (R,) bodies; velocities are changed.

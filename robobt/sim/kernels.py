@@ -1,10 +1,9 @@
 """One control tick of the league's physics, in any number of arenas.
 
-What moves the bodies and resolves contacts is pymunk, or in many arenas what does the same over arrays
-(:mod:`robobt.sim.contacts.solver`); what neither knows is written once,
-compiled: how robots and ball move (:mod:`robobt.sim.motion`), a ball in the air
-(:mod:`robobt.sim.flight`), dribbler and kicker (:mod:`robobt.sim.mouth`), and contacts
-within a step (:mod:`robobt.sim.sweep`).
+Bodies are moved and contacts resolved by pymunk or, in many arenas, by the equivalent over arrays
+(:mod:`robobt.sim.contacts.solver`). Everything else is written once, compiled: how robots and ball move
+(:mod:`robobt.sim.motion`), a ball in the air (:mod:`robobt.sim.flight`), dribbler and kicker
+(:mod:`robobt.sim.mouth`), and contacts within a step (:mod:`robobt.sim.sweep`).
 """
 
 from __future__ import annotations
@@ -61,13 +60,13 @@ from robobt.world.geometry import FloatArray
 from robobt.world.state import BALL_RADIUS, RECEIVED_HEIGHT, ROBOT_HEIGHT
 
 _OVERLAP = 3e-4
-"""How deep a swept ball is put into what it hits, so that the solver sees the contact [m]."""
+"""Depth to which a swept ball is put into the object it hits, so that the solver sees the contact [m]."""
 
 _BACKING = -0.02
 """A robot slower than this along its heading backs away from the ball [m/s]."""
 
 _ELSEWHERE = 1e4
-"""Coordinate of the place, clear of the arena, where its space has the balls that fly high [m]."""
+"""Coordinate outside the arena where its space keeps balls that fly high [m]."""
 
 
 @compiled_lean
@@ -250,14 +249,14 @@ def _move_ball(arena: Arena, solver: Solver, dt: float) -> bool:
         for i in range(len(arena.robots)):
             meet(body, ball, arena.robots[i], p, w, dt)
         if ball.vx != before_x or ball.vy != before_y:
-            # Pushed, it moves as it leaves the contact: what friction took is made up for.
+            # A pushed ball keeps its speed from the contact: the loss by friction is compensated.
             ball.move_x, ball.move_y = ball.vx, ball.vy
     if high:
         pass_over(arena, dt)
     elif ball.carrier < 0 and hypot(ball.move_x, ball.move_y) * dt > 0.05 * BALL_RADIUS:
         share, met_x, met_y = sweep(arena, solver, dt)
         if share < 1.0:
-            # From then on it goes with what it met, which may move away from it.
+            # From then on it moves with the object it met, which may move away from it.
             x, y = ball.move_x - met_x, ball.move_y - met_y
             back = max(1.0 - share - _OVERLAP / (hypot(x, y) * dt), 0.0)
             body.x -= x * dt * back
@@ -267,14 +266,14 @@ def _move_ball(arena: Arena, solver: Solver, dt: float) -> bool:
 
 @compiled_inline
 def _carry(arena: Arena, dt: float) -> None:
-    """Let the ball go with the robot that carries it, unless that takes it into a wall."""
+    """Move the ball with the robot that carries it, unless that takes it into a wall."""
     body, ball, p = arena.body, arena.ball, arena.parameters
     if ball.shared > 0:
         tie(arena.robots, arena.drives, ball.carrier, arena.wheels, dt)
     robot = arena.robots[ball.carrier]
     carry(body, ball, robot, p, dt)
     if in_a_wall(body.x + ball.move_x * dt, body.y + ball.move_y * dt, arena.walls):
-        # Glue knows no contacts and would carry the ball through; force gives way.
+        # A glued ball has no contacts and would be carried through; a pulled ball gives way.
         hold(body, ball, robot, p, -1.0, dt)
         ball.carrier = -1
 
@@ -293,7 +292,7 @@ def _put_ball(arena: Arena, high: bool) -> tuple[float, float]:
 
 @compiled_inline
 def _take_ball(arena: Arena, high: bool, x: float, y: float) -> None:
-    """Let the ball take what contacts did to its body in a step; one that was high goes on from (x, y)."""
+    """Apply the contacts of a step to the ball; a high ball continues from (x, y)."""
     body, ball = arena.body, arena.ball
     if high:
         body.x, body.y, body.vx, body.vy = x, y, ball.vx, ball.vy
@@ -307,7 +306,7 @@ def _take_ball(arena: Arena, high: bool, x: float, y: float) -> None:
 
 @compiled_lean
 def _note(history: Records[Body], arena: Arena) -> None:
-    """Note an arena's bodies after a step; of the ball what it is, not what the contacts saw."""
+    """Record an arena's bodies after a step, with the ball's true state instead of the contacts' one."""
     for i in range(len(arena.bodies)):
         body, seen = arena.bodies[i], history[i]
         seen.x, seen.y, seen.heading = body.x, body.y, body.heading

@@ -15,7 +15,7 @@ from robobt.world.compiled import compiled_lean
 from robobt.world.records import Limits
 
 _SURE = 1.0 - 1e-9
-"""Rounding may not make more of a change of velocity than it is."""
+"""Tolerance, so that rounding does not exaggerate a change of velocity."""
 
 
 @compiled_lean
@@ -34,7 +34,7 @@ def drive(robot: Body, command: Command, limits: Limits, dt: float) -> None:
         along, across = limits.braking, limits.lateral_braking
     else:
         along, across = limits.acceleration, limits.lateral_acceleration
-    # What the weaker limit allows needs no longer look.
+    # A change within the weaker limit needs no further check.
     if abs(dx) + abs(dy) > _SURE * min(along, across) * dt:
         step = hypot(dx, dy)
         ahead = (c * dx + s * dy) / step

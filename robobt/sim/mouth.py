@@ -1,4 +1,4 @@
-"""What a robot does with the ball in its mouth: dribbler and kicker."""
+"""The dribbler and the kicker, which act on a ball in the mouth."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _GLUE_GAP = 2e-4
 
 @compiled_lean
 def in_mouth(body: Body, robot: Body, p: Parameters, depth: float) -> bool:
-    """Return whether the ball lies ahead of the flat front, within the mouth and ``depth`` of it."""
+    """Return whether the ball is in front of the flat front, within the mouth and within ``depth`` of it."""
     px, py = body.x - robot.x, body.y - robot.y
     reach = p.body.face + BALL_RADIUS + depth
     if px * px + py * py > reach * reach + p.half_mouth * p.half_mouth:
@@ -32,7 +32,7 @@ def in_mouth(body: Body, robot: Body, p: Parameters, depth: float) -> bool:
 def let_in(body: Body, ball: Ball, robot: Body, p: Parameters, dt: float) -> None:
     """Move a ball that comes within ``dt`` to where the kicker's sensor sees it.
 
-    A fast one would else go past the sensor and bounce off within one step.
+    Otherwise a fast ball would pass the sensor and bounce off within one step.
     """
     px, py = body.x - robot.x, body.y - robot.y
     c, s = cos(robot.heading), sin(robot.heading)

@@ -1,4 +1,4 @@
-"""What compiled code calls the numbers of the simulator's arrays.
+"""Records by which compiled code accesses the simulator's arrays.
 
 The arrays themselves hold plain numbers: numba takes twice as long to look at the type of a record array
 when Python calls it. ``numbers.view(BODY)[..., 0]`` sees the last axis as records, in numpy as in compiled

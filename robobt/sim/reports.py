@@ -1,4 +1,4 @@
-"""What is told of the arenas after a tick: where everything is, who has the ball, who touched it last."""
+"""The report of the arenas after a tick: positions, ball contact and last touch."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _TOUCH = 2e-3
 
 @compiled_inline
 def note_touch(arena: Arena) -> None:
-    """Remember who touches the ball; of several, one that did not touch it before."""
+    """Record the robot that touches the ball; if several do, one that did not touch it before."""
     body, ahead = arena.body, arena.parameters.front + BALL_RADIUS + _TOUCH
     found = -1
     for i in range(len(arena.robots)):

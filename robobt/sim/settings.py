@@ -35,7 +35,7 @@ class BallSettings(BallModel):
 
     @property
     def model(self) -> BallModel:
-        """What of it frames tell, and skills plan with."""
+        """The part of the ball's settings that frames contain and skills plan with."""
         return BallModel(**self.model_dump(include=set(BallModel.model_fields)))
 
 
@@ -210,7 +210,8 @@ PRESETS: dict[str, SimSettings] = {
             robot_restitution=0.36,
             robot_friction=0.05,
         ),
-        # Commands take effect after 47 ms, of which pilots plan with 20: with more they brake too early.
+        # Commands take effect after 47 ms, but pilots plan with 20 ms, because with more they brake too
+        # early.
         realism=RealismSettings(command_delay=0.027),
     ),
     "sumatra": SimSettings(

@@ -5,7 +5,7 @@ and turning rate may change, and takes the commanded direction as it is. A motor
 limited torque brings its wheel to that speed, and the wheel drives the body by
 friction with the ground, which depends on how much of the weight rests on it. So a
 robot that accelerates, brakes or changes direction faster than the friction allows
-slips, turns less than it was told to, and leaves its heading.
+slips, turns less than commanded, and leaves its heading.
 
 A wheel touches the ground with both edges of its rim, of which one slips whenever
 the robot turns: which one depends on the force, hence the turning rate of a robot
@@ -26,7 +26,7 @@ from robobt.world.records import Limits
 _WHEELS = 4
 
 _INNER, _OUTER = _EDGES = (0, 1)
-"""Of a rim."""
+"""The two edges of a rim."""
 
 _SWEEPS = 8
 """Passes over the contacts; the impulses of the last step are where they start."""

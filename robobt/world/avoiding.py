@@ -1,4 +1,4 @@
-"""The observation of a robot that is to get to the ball among others that move, defined once and compiled."""
+"""The compiled observation of a robot that drives to the ball among moving robots."""
 
 from __future__ import annotations
 
@@ -13,22 +13,22 @@ from robobt.world.records import BALL, ROBOT
 from robobt.world.state import ROBOT_RADIUS, Frame, RobotState
 
 SPEED = 1.5
-"""Speed of the ways that are thought of [m/s]; the slow ones are half as fast."""
+"""Speed of the tested ways [m/s]; slow ways have half of it."""
 
 WAYS, SLOW_WAYS = 16, 8
-"""How many directions are thought of at full and at half speed, evenly round, the first to the ball."""
+"""Number of evenly spaced directions at full and at half speed, the first one to the ball."""
 
 AHEAD = 2.0
-"""How far ahead a way is looked along [s]."""
+"""Time for which a way is tested [s]."""
 
 MARGIN = 0.08
-"""Hulls nearer than this are in each other's way [m]."""
+"""Hulls closer than this block each other [m]."""
 
 LAG = 0.15
-"""What it takes to get from one velocity to another [s], half of which is driven as before."""
+"""Time to change from one velocity to another [s]; half of it is driven at the old velocity."""
 
 FIRST_WAY = 6
-"""Where they begin in an observation."""
+"""Their first index in an observation."""
 
 GO_TO_BALL_AMONG_ROBOTS = ObservationSpec(
     "go_to_ball_among_robots",
@@ -44,12 +44,12 @@ GO_TO_BALL_AMONG_ROBOTS = ObservationSpec(
     ),
     vectors=(0, 3),
 )
-"""The ball, the robot's velocity, and for how long ways round about are free.
+"""The ball, the robot's velocity, and how long ways in all directions are free.
 
 ``ball_x`` and ``ball_y`` are the direction to the ball in the robot's frame, of length 1. ``free_A`` is for
 how long the robot can drive at :data:`SPEED` in the direction A degrees to the left of the ball's until it
-and another are nearer than :data:`MARGIN`, if the others go on as they do: at most :data:`AHEAD`, 0 where
-they are that near and get nearer. ``slow_A`` is the same at half that speed, ``standing`` at none: the
+and another robot are nearer than :data:`MARGIN`, if the others keep their velocity: at most :data:`AHEAD`, 0
+if they are that near and get nearer. ``slow_A`` is that time at half the speed, ``standing`` at rest: the
 velocity obstacles of Fiorini & Shiller (1998), seen from the robot.
 """
 
@@ -59,7 +59,7 @@ _HEAD = record_of(GO_TO_BALL_AMONG_ROBOTS.entries[:FIRST_WAY])
 
 @compilable
 def free_time(ox: float, oy: float, wx: float, wy: float, apart: float) -> float:
-    """Return when one at (ox, oy) that drives with (wx, wy), both relative, comes nearer than ``apart``."""
+    """Return when a robot at (ox, oy) with velocity (wx, wy), both relative, comes nearer than ``apart``."""
     closing = ox * wx + oy * wy
     if closing >= 0.0:
         return AHEAD
@@ -69,7 +69,7 @@ def free_time(ox: float, oy: float, wx: float, wy: float, apart: float) -> float
     squared = wx * wx + wy * wy
     meets = closing * closing - squared * beyond
     if meets <= 0.0 or squared == 0.0:
-        # A robot that has come to rest may keep a velocity so small that its square is none.
+        # A robot at rest may have a velocity so small that its square is 0.
         return AHEAD
     return min((-closing - sqrt(meets)) / squared, AHEAD)
 

@@ -1,4 +1,4 @@
-"""How long a kicked ball takes and how fast it has to be kicked, in closed form."""
+"""Travel times and kick speeds of a ball, in closed form."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ GRAVITY = 9.81
 """Acceleration of free fall [m/s^2]."""
 
 _LAST_APEX = 0.01
-"""A hop that would be lower than this is none. Source: Sumatra's model of a chip [m]."""
+"""Lowest hop; below it the ball rolls [m]. Source: Sumatra's model of a chip."""
 
 
 @compilable
@@ -65,7 +65,7 @@ def kick_speed(distance: float, arrival_speed: float, slide: float, roll: float,
 
 
 class BallModel(Settings):
-    """How a kicked ball moves: it slides, then rolls; chipped, it flies and hops before it rolls.
+    """The motion of a kicked ball: it slides, then rolls; a chipped ball flies and hops before it rolls.
 
     On the ground it slides with one deceleration down to ``switch_share`` of the
     speed it was kicked with, and rolls with a smaller one from there to rest. A
@@ -116,7 +116,7 @@ class BallModel(Settings):
         return list(zip(accumulate(times), accumulate(ways), strict=True))
 
     def along(self, speed: float, touch_downs: int) -> float:
-        """Return the speed along the ground of such a chip after so many touch-downs [m/s]."""
+        """Return the speed along the ground of such a chip after this many touch-downs [m/s]."""
         kept = self.first_hop * self.other_hops ** (touch_downs - 1) if touch_downs else 1.0
         return speed * cos(CHIP_ANGLE) * kept
 

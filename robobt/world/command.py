@@ -13,7 +13,7 @@ class KickTrigger(StrEnum):
     NOW = "now"
     """At once, and only if the ball is in the mouth at that instant."""
     ON_CONTACT = "on_contact"
-    """As soon as the ball is in the mouth, while the command stands."""
+    """As soon as the ball is in the mouth, while the command is in force."""
 
 
 CHIP_ANGLE = pi / 4
@@ -27,10 +27,10 @@ class RobotCommand:
     Attributes:
         vx, vy: velocity [m/s].
         omega: turning rate, counter-clockwise positive [rad/s].
-        kick_speed: speed at which the ball is to leave [m/s]; 0 is no kick. That of a chip is
-            the one in space, not the one along the ground.
+        kick_speed: speed at which the ball is to leave [m/s]; 0 for no kick. For a chip it is the speed in
+            space, not along the ground.
         kick_trigger: when the kick fires.
-        dribbler: whether the dribbler turns.
+        dribbler: whether the dribbler is on.
         kick_angle: angle from the ground at which the ball is to leave [rad]: 0 is a flat kick,
             :data:`CHIP_ANGLE` a chip. Most robots chip at one angle, whichever is commanded.
     """

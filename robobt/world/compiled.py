@@ -28,13 +28,13 @@ _TOLD = "ROBOBT_COMPILING_TOLD"
 """Set in the environment, which workers inherit."""
 
 _PATIENCE = 2.0
-"""Compiling that has taken so long is told [s]."""
+"""Compilation time after which a message is printed [s]."""
 FloatArray = NDArray[np.float64]
 Function = TypeVar("Function", bound=Callable[..., object])
 
 
 def compiled(function: Function) -> Function:
-    """Compile on first use, and keep what was compiled where a folder can be written to."""
+    """Compile at first use, and cache the result if a folder is writable."""
     return _compiled(function)
 
 
@@ -59,7 +59,7 @@ def compiled_inline(function: Function) -> Function:
 
 def _compiled(function: Function, **options: Any) -> Function:
     made = njit(**options)(function)
-    # A read-only installation, run by somebody without a home, keeps nothing: compile anew each time.
+    # A read-only installation, run by a user without a home folder, has no cache and compiles each time.
     with suppress(RuntimeError):
         made._cache = DeepCache(function)
     return cast(Function, made)
@@ -67,19 +67,19 @@ def _compiled(function: Function, **options: Any) -> Function:
 
 @contextmanager
 def timing_compilation() -> Iterator[Callable[[], float]]:
-    """Yield what tells how long numba has compiled since [s]; loading what it has kept does not count."""
+    """Yield a function that returns numba's compilation time since then [s], without loading from cache."""
     listener = TimingListener()  # type: ignore[no-untyped-call]
     with install_listener(_COMPILING, listener):
         yield lambda: float(listener.duration) if listener.done else 0.0
 
 
 class CompilingTold(TimingListener):
-    """Says once, on a terminal, that a run waits for the compiler; what is quick is not worth a word."""
+    """Prints once, on a terminal, that a run waits for the compiler; short waits are not reported."""
 
     def __init__(self, patience: float = _PATIENCE) -> None:
         super().__init__()  # type: ignore[no-untyped-call]
         self._patience = patience
-        # The first worker speaks for all of them, unless the process that started it has done so.
+        # The first worker prints for all, unless the process that started it has done so.
         name = multiprocessing.current_process().name
         worker = multiprocessing.parent_process() is not None
         self._told = worker and (_TOLD in os.environ or not name.endswith("-1"))
@@ -145,7 +145,7 @@ def _field_dtype(hint: Any) -> np.dtype[Any]:
 
 @compilable
 def records(count: int, dtype: np.dtype[np.record]) -> Any:
-    """Return so many records, not filled in."""
+    """Return this number of records, not filled in."""
     return np.empty(count, dtype=dtype)
 
 

@@ -1,7 +1,7 @@
-"""What compiled code was made of: the key under which numba keeps it.
+"""The cache key of compiled code: everything that it depends on.
 
-Numba looks at the file of the function that it compiles alone. One that was changed elsewhere, and which the
-function calls, would go on as it was compiled before.
+Numba's own key has only the file of the compiled function. After a change of another file, a function called
+from it would keep running as compiled before.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ _CONSTANTS = (bool, int, float, str, tuple, frozenset, np.generic, np.dtype)
 
 
 class _Index(IndexDataCacheFile):
-    """Numba's index of what was kept, which may name types that are there no more."""
+    """Numba's cache index, which may name types that no longer exist."""
 
     def _load_index(self) -> dict[object, str]:
         try:
@@ -30,7 +30,7 @@ class _Index(IndexDataCacheFile):
 
 
 class DeepCache(FunctionCache):
-    """Numba's cache of a function's compiled code, which also asks what the function calls."""
+    """Numba's cache of a function's compiled code, with the called functions in its key."""
 
     def __init__(self, function: Callable[..., object]) -> None:
         super().__init__(function)  # type: ignore[no-untyped-call]

@@ -1,4 +1,4 @@
-"""The league's divisions: what their rules say differently.
+"""The differences between the league's divisions.
 
 Source: RoboCup SSL rules of 2026, appendix and chapter "Offenses".
 """
@@ -18,8 +18,8 @@ class Division:
 
     Attributes:
         name: "A" or "B".
-        robots: how many a team may have on the field.
-        kick_time: to take a free kick, to go on with a ball that is stuck, to get it out of the own
+        robots: largest number of a team's robots on the field.
+        kick_time: time to take a free kick, to move a ball without progress, and to clear it from the own
             defence area [s].
         aimless_kick: whether a kick from the own half over the far goal line is an offence.
         must_place: whether a team may not decline to place the ball.

@@ -58,7 +58,7 @@ GO_TO_BALL = ObservationSpec(
 GO_TO_BALL_TO_SHOOT = ObservationSpec(
     "go_to_ball_to_shoot", 1, (*GO_TO_BALL.entries, *entries("sin_goal cos_goal", most=1.0))
 )
-"""The same, and the direction from the ball to the middle of the attacked goal, in the robot's frame."""
+"""Go-To-Ball's entries, and the direction from the ball to the goal's middle, in the robot's frame."""
 
 SHOOT = ObservationSpec(
     "shoot",
@@ -130,11 +130,11 @@ OBSERVATIONS = {
         *(SHOOT, SCORE_ON_GOALKEEPER),
     )
 }
-"""By their names, but those of robots in a team, of which there are as many as sizes of teams."""
+"""Observations by name, except those of robots in a team, which depend on the teams' sizes."""
 
 
 def find_observation(name: str) -> ObservationSpec | None:
-    """Return the observation of that name, those of robots in a team included; None: there is none."""
+    """Return the observation of that name, including those of robots in a team, or None."""
     places = places_of(name)
     if places is not None:
         return team_view(*places)
@@ -189,7 +189,7 @@ def _observe_shot(shooter: Place, target: Place, opponent: Place, seen: Any) -> 
 
 @compiled_lean
 def _observe_scene(shooter: Robot, ball: Ball, target: Place, seen: Any) -> tuple[float, float, float]:
-    """Fill in what is no opponent; return cosine and sine of the shot's direction, and its length."""
+    """Fill in all but the opponents; return cosine and sine of the shot's direction, and its length."""
     dx, dy = target.x - shooter.x, target.y - shooter.y
     length, angle = hypot(dx, dy), atan2(dy, dx)
     c, s = cos(angle), sin(angle)

@@ -70,13 +70,13 @@ class Restart(StrEnum):
 
 @dataclass(slots=True, frozen=True)
 class TeamStatus:
-    """What the game controller says of one team.
+    """A team's data from the game controller.
 
     Attributes:
-        keeper: number of the goalkeeper; None where nobody decided it.
+        keeper: number of the goalkeeper; None if it is undecided.
         max_robots: robots it may have on the field, cards taken off; None for any number.
-        yellow_cards: how many are in force now.
-        red_cards: how many it got.
+        yellow_cards: number of active yellow cards.
+        red_cards: number of red cards.
         can_place_ball: whether it may be asked to place the ball.
         substituting: whether its robots may be exchanged by hand now.
     """
@@ -98,15 +98,15 @@ class GameState:
         stage: the match's stage.
         blue_score, yellow_score: goals.
         restart: the pending restart, or None once the ball is in play.
-        restart_team: whose restart it is.
+        restart_team: the team of the restart.
         may_touch: whether ``restart_team`` may take the restart now.
-        placement: where the ball has to be placed or lies for the restart,
-            in the coordinates of the frame that holds this state [m].
-        penalty: whose penalty kick it is, from its preparation to its end; ``restart`` is None once the ball
-            has moved, but everybody but kicker and goalkeeper has to stay behind it.
-        blue, yellow: the teams, as a game controller reports them.
+        placement: where the ball has to be placed, or is, for the restart, in the coordinates of the frame
+            that holds this state [m].
+        penalty: the team of a penalty kick, from its preparation to its end; ``restart`` is None once the
+        ball has moved, but all robots except kicker and goalkeeper have to stay behind the ball. blue,
+        yellow: the teams, as a game controller reports them.
         events: game events since play was stopped, by the league's names in lower case, oldest first.
-        upcoming: the command that will follow this stop or placement, None as far as nobody said.
+        upcoming: the command that will follow this stop or placement, None if unknown.
         action_time: time left for the present action, None without a limit [s]. Two states that
             differ only in their times are equal.
         stage_time: time left in this stage, negative in overtime; None without a game controller [s].
@@ -148,14 +148,14 @@ class GameState:
         return self.restart is None and self.command in STARTED
 
     def ball_for(self, team: Team) -> int:
-        """Return whose ball it is: 1 where ``team`` alone may play it, 0 where both may, else -1."""
+        """Return 1 if only ``team`` may play the ball, 0 if both teams may, else -1."""
         if self.in_play:
             return 0
         return 1 if self.command in STARTED and self.may_touch and self.restart_team is team else -1
 
     @property
     def next_team(self) -> Team | None:
-        """Whose restart follows this stop or placement; None for both teams', or where nobody said."""
+        """The team of the restart after this stop or placement; None for both teams, or if unknown."""
         return None if self.upcoming is None else _TEAMS.get(self.upcoming)
 
     def mirrored(self) -> GameState:
@@ -180,4 +180,4 @@ _TEAMS = {
     if command.name.endswith(("_BLUE", "_YELLOW"))
 }
 OPEN_PLAY = GameState()
-"""Free play without a referee: what a scenario without one holds."""
+"""Free play without a referee, for scenarios without one."""

@@ -1,4 +1,4 @@
-"""What a robot can do, written once for pilots, raters and the simulator."""
+"""A robot's limits, shared by pilots, raters and the simulator."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ class RobotLimits(Settings):
         0.5, gt=0, le=10, description="speed relative to a ball at which the dribbler still takes it [m/s]"
     )
     receive_speed: float | None = Field(
-        None, gt=0, le=10, description="the same of a ball that comes at a robot that does not brake [m/s]"
+        None, gt=0, le=10, description="that speed for a ball that meets a robot that does not brake [m/s]"
     )
     hold_acceleration: float = Field(
         3.0, gt=0, le=100, description="acceleration, as by braking or turning, at which it keeps it [m/s^2]"

@@ -1,4 +1,4 @@
-"""What observation vectors are made of, whatever they hold."""
+"""The building blocks of observation vectors."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ Row = tuple[float, ...]
 
 @dataclass(frozen=True, slots=True)
 class Seen:
-    """What an observation is made of, in many arenas or in one frame.
+    """The input of an observation, in many arenas or in one frame.
 
     The robots' team attacks towards +x.
 
@@ -30,8 +30,8 @@ class Seen:
         robots: (n, R) records :data:`~robobt.world.records.ROBOT`: the one that observes, its team-mates,
             the opponents.
         balls: (n,) records :data:`~robobt.world.records.BALL`.
-        own: how many robots, the first, are of the observer's team.
-        field: on which they play.
+        own: number of robots, the first ones, in the observer's team.
+        field: the field.
     """
 
     robots: NDArray[np.void]
@@ -64,7 +64,7 @@ def seen(robots: FloatArray, balls: FloatArray, own: int, field: FieldGeometry) 
     """Return arrays (n, R, 6) and (n, 4) by the names of their numbers; the rest is as for :class:`Seen`."""
     bodies, rolling = np.ascontiguousarray(robots), np.ascontiguousarray(balls)
     found = Seen(bodies.view(ROBOT)[..., 0], rolling.view(BALL)[..., 0], own, field)
-    # Who looks must not move what is there.
+    # Observing must not change the state.
     found.robots.flags.writeable = found.balls.flags.writeable = False
     return found
 
@@ -144,10 +144,10 @@ OWN_OBSERVATIONS: dict[str, Observation] = {}
 def own_observation(
     name: str, version: int, *vector: Entry
 ) -> Callable[[Callable[[Seen], FloatArray]], Observation]:
-    """Return a decorator that registers a function as the one that makes an observation of one's own.
+    """Return a decorator that registers a function as the maker of a user's observation.
 
     Args:
-        name: which model cards say.
+        name: name in model cards.
         version: to be changed with the meaning of any entry.
         vector: its entries.
 

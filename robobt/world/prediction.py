@@ -1,4 +1,4 @@
-"""Late observations, predicted to the present with the commands that are on their way."""
+"""Delayed observations, predicted to the present with the commands on their way."""
 
 from __future__ import annotations
 
@@ -25,16 +25,16 @@ _STEP = 0.005
 """Longest step of the motion model [s]."""
 
 _LONGEST_GAP = 0.1
-"""A robot that is seen in the same place for longer stands there, whatever was commanded [s]."""
+"""A robot seen in the same place for longer than this stands there, despite its commands [s]."""
 
 _CARRIED = 0.03
-"""A ball that was seen no farther from its place in the mouth than this lies there [m]."""
+"""A ball seen within this distance of its place in the mouth is in the mouth [m]."""
 
 _FRONT = 0.08
-"""Centre to the flat front, where nothing better is known [m]."""
+"""Default distance from the centre to the flat front [m]."""
 
 _FADES = 0.04
-"""How a ball was seen to move that several robots hold counts for a third after so long [s]."""
+"""Time after which the observed motion of a ball held by several robots counts for a third [s]."""
 
 
 class _Sent(NamedTuple):
@@ -52,11 +52,11 @@ class _Seen(NamedTuple):
 
 
 class PredictedWorld(WrappedWorld):
-    """A world whose frames show where everything is now, as far as that follows from the commands sent.
+    """A world whose frames are predicted to the present from the commands sent.
 
-    Every robot is driven on from where it was seen, under the commands that were in
-    force since and within its limits. A ball in the mouth, which the robot's own sensor
-    reports without delay, goes with its robot; any other rolls on as it was seen to.
+    Every robot is moved on from where it was seen, by the commands in force since then and within its limits.
+    A ball in the mouth, which the robot's sensor reports without delay, moves with its robot; any other ball
+    rolls on as observed.
 
     Args:
         world: the world that is seen late.
@@ -144,10 +144,9 @@ _STILL = RobotCommand()
 
 
 def _held(ball: BallState, holding: list[tuple[RobotState, RobotState]], age: float) -> BallState:
-    """Return a ball that robots hold, which are given as they were seen and as they are now.
+    """Return the ball held by robots, which are given as seen and as they are now.
 
-    Each would have it go its own way: it goes between. How it was seen to move besides counts for the
-    less the longer ago that is.
+    The mean of the robots' predictions is used. The ball's own observed motion counts less the older it is.
     """
     x = y = vx = vy = 0.0
     fresh = exp(-age / _FADES) if len(holding) > 1 else 0.0
@@ -157,7 +156,7 @@ def _held(ball: BallState, holding: list[tuple[RobotState, RobotState]], age: fl
         ahead, aside = c * dx + s * dy, c * dy - s * dx
         place = _FRONT + BALL_RADIUS
         if abs(ahead - place) > _CARRIED or abs(aside) > _FRONT / 2:
-            # It was not there yet when it was seen.
+            # The ball was not in the mouth yet when it was seen.
             ahead, aside, fresh = place, 0.0, 0.0
         c, s = cos(after.heading), sin(after.heading)
         dx, dy = c * ahead - s * aside, s * ahead + c * aside

@@ -1,4 +1,4 @@
-"""Which robots count as on the field: those of a team with too many that have left it do not."""
+"""The robots that count as on the field: robots that left a team with too many do not."""
 
 from __future__ import annotations
 
@@ -27,14 +27,15 @@ def taken_off(
 ) -> frozenset[int]:
     """Return the numbers of a team's robots that count as off the field.
 
-    Of a team that has more robots than ``most``, as after a card, so many too many are off as stand in one of
-    its substitution areas: centre outside a touch line and at most 1 m from the half-way line, where their
-    handler has taken them, or in division A behind its own goal line. A robot that only fetches the ball
-    there is not. Of several those with the highest numbers are off; None allows any number.
+    If a team has more robots than ``most``, for example after a card, the surplus robots count as off while
+    they stand in a substitution area: centre outside a touch line and at most 1 m from the half-way line,
+    where their handler has taken them, or in division A behind its own goal line. A robot that only fetches
+    the ball there still counts. If there are several, those with the highest numbers are off; None allows any
+    number.
 
     Args:
         field: the field.
-        robots: all of the team's.
+        robots: all robots of the team.
         most: how many the team may have.
         side: of the team's goal in these coordinates, -1 or 1.
     """

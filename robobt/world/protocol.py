@@ -28,7 +28,7 @@ class Placement:
 
 
 class ReportedEvent(Protocol):
-    """An event as referees report it: what, when, who did it and in words."""
+    """An event as referees report it: kind, time, team, robot and description."""
 
     @property
     def kind(self) -> str:
@@ -74,7 +74,7 @@ class World(Protocol):
         """Return the best knowledge of the real state, for referees and records, seen from blue's side."""
 
     def act(self, commands: Mapping[RobotId, RobotCommand]) -> None:
-        """Send one command a robot and let one control period pass.
+        """Send one command per robot and advance one control period.
 
         ``commands`` are in each robot's own frame; a robot without one stands still.
         """
@@ -87,7 +87,7 @@ class World(Protocol):
         return
 
     def put_ball(self, x: float, y: float, vx: float, vy: float) -> None:  # noqa: ARG002
-        """Put the ball somewhere with a velocity, where :attr:`movable`.
+        """Place the ball with a velocity, if :attr:`movable`.
 
         It is put at ``x``, ``y`` in world coordinates [m] and rolls with ``vx``, ``vy`` [m/s].
 
@@ -97,7 +97,7 @@ class World(Protocol):
         raise ValueError("nothing can be moved in this world")
 
     def put_robot(self, robot: RobotId, x: float, y: float, heading: float) -> None:  # noqa: ARG002
-        """Put a robot somewhere at rest, where :attr:`movable`; one that was taken is there again.
+        """Place a robot at rest, if :attr:`movable`; a robot off the field returns.
 
         It is put at ``x``, ``y`` in world coordinates [m] and looks along ``heading`` [rad].
 
@@ -107,7 +107,7 @@ class World(Protocol):
         raise ValueError("nothing can be moved in this world")
 
     def take_robot(self, robot: RobotId) -> None:  # noqa: ARG002
-        """Take a robot off the field until it is put somewhere, where :attr:`movable`."""
+        """Take a robot off the field until it is placed again, if :attr:`movable`."""
         raise ValueError("nothing can be moved in this world")
 
     @property
@@ -117,11 +117,11 @@ class World(Protocol):
 
     @property
     def paced(self) -> bool:
-        """Whether :meth:`act` itself waits for real time, as on a field, which waits for nobody."""
+        """Whether :meth:`act` itself waits for real time, as on a real field."""
         return False
 
     def seen_kicks(self) -> Sequence[tuple[RobotId, float]] | None:
-        """Return who was seen to kick between the last two frames, and when in the frames' time [s].
+        """Return the robots seen to kick between the last two frames, and the times [s].
 
         None where that follows from the true states and the commands.
         """
@@ -132,7 +132,7 @@ class World(Protocol):
         return ()
 
     def draw(self, sketch: Sketch) -> None:  # noqa: ARG002
-        """Draw what this world knows besides frames on ``sketch``, in world coordinates, for viewers."""
+        """Draw this world's further information on ``sketch``, in world coordinates, for viewers."""
         return
 
     @property
@@ -152,7 +152,7 @@ class World(Protocol):
 
 
 class WrappedWorld(World):
-    """Another world; what a subclass leaves as it is, is the other world's."""
+    """A wrapper of another world, to which all members not overridden are passed on."""
 
     def __init__(self, world: World) -> None:
         self.world = world

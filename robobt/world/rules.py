@@ -1,4 +1,4 @@
-"""What decides a match, once: lines, goals, defence areas, touches and possession.
+"""The rules that decide a match, in one place: lines, goals, defence areas, touches and possession.
 
 Referee, end conditions, training rewards, statistics and tests call the functions
 here. Those that take single numbers can be called from compiled code too, as the
@@ -58,7 +58,7 @@ HELD_GAP = 0.02
 """A ball closer to the hull than this is held. Source: RoboBulls' code and Sumatra's referee [m]."""
 
 KEPT_GAP = 0.06
-"""Who had the ball still has it up to this gap. Source: Sumatra's autoreferee [m]."""
+"""A robot that had the ball still has it up to this gap [m]. Source: Sumatra's autoreferee."""
 
 MOUTH_SECTOR = radians(45.0)
 """A robot has a ball that lies within this angle of its heading [rad]."""
@@ -193,7 +193,7 @@ def hull_gap(robot: Robot, ball: Ball) -> float:
 
 
 def touches(robot: RobotState, ball: BallState) -> bool:
-    """Return whether the ball lies in the robot's mouth or against its hull."""
+    """Return whether the ball is in the robot's mouth or touches its hull."""
     if robot.ball_contact:
         return True
     return ball.z < ROBOT_HEIGHT and against_hull(ball.x - robot.x, ball.y - robot.y, robot.heading)
@@ -201,7 +201,7 @@ def touches(robot: RobotState, ball: BallState) -> bool:
 
 @compilable
 def against_hull(dx: float, dy: float, heading: float) -> bool:
-    """Return whether a ball so far from a robot's centre [m], and no higher than it, is against its hull."""
+    """Return whether a ball at this distance from a robot's centre [m], and no higher, touches its hull."""
     reach = ROBOT_RADIUS + BALL_RADIUS + _TOUCH_GAP
     if dx * dx + dy * dy > reach * reach:
         return False
@@ -227,7 +227,7 @@ def has_ball(robot: RobotState, ball: BallState, sector: float = MOUTH_SECTOR) -
 
 @compilable
 def before_mouth(dx: float, dy: float, heading: float, sector: float = MOUTH_SECTOR) -> bool:
-    """Return whether a ball so far from a robot's centre [m] is held, whatever the sensor says.
+    """Return whether a ball at this distance from a robot's centre [m] is held, regardless of the sensor.
 
     ``sector`` is on which side of the ``heading`` that may be [rad].
     """
@@ -249,7 +249,7 @@ def keeps_ball(robot: Robot, ball: Ball) -> bool:
 
 
 def owner(frame: Frame) -> RobotId | None:
-    """Return the robot that has the ball; the nearest of several, None when nobody has it."""
+    """Return the robot that has the ball; the nearest of several, or None."""
     best: RobotId | None = None
     nearest = 2.0 * _REACH
     for team, robots in ((frame.team, frame.own), (frame.team.other, frame.opponents)):

@@ -1,4 +1,4 @@
-"""The observation of a robot that is to score on a goalkeeper, defined once and compiled."""
+"""The compiled observation of a robot that is to score on a goalkeeper."""
 
 from __future__ import annotations
 
@@ -24,10 +24,10 @@ from robobt.world.records import BALL, ROBOT, Ball, Robot
 from robobt.world.state import Frame, RobotState
 
 KICK_SPEED = 6.0
-"""The kick that is thought of [m/s]."""
+"""Speed of the assumed kick [m/s]."""
 
 FAR_OFF = 1.0
-"""What misses the goal by as much misses it [m]."""
+"""Limit of the distance from the goal's middle [m]."""
 
 SCORE_ON_GOALKEEPER = ObservationSpec(
     "score_on_goalkeeper",
@@ -53,7 +53,7 @@ SCORE_ON_GOALKEEPER = ObservationSpec(
 )
 """The robot's velocity, the ball, the attacked goal and its goalkeeper, in the robot's frame.
 
-Velocities are those over the field. ``sin_goal`` and ``cos_goal`` are of the angle from the heading to the
+Velocities are relative to the field. ``sin_goal`` and ``cos_goal`` are of the angle from the heading to the
 middle of the goal. ``aim`` is where a kick of :data:`KICK_SPEED` would cross the goal line, measured from its
 middle, at most :data:`FAR_OFF` either way; ``keeper_aside`` how far to the left of such a shot the goalkeeper
 is, at most half as much.
@@ -105,8 +105,8 @@ def score_on_goalkeeper_rows(
 def score_on_goalkeeper_of(frame: Frame, robot: RobotState) -> FloatArray:
     """Compute the state :data:`SCORE_ON_GOALKEEPER` of one robot in a frame, (19,).
 
-    The goalkeeper is whom the game's state names, else the opponent nearest to the middle of its goal;
-    without any it is as if one stood there.
+    The goalkeeper is the one in the game's state, else the opponent nearest to the middle of its goal;
+    without opponents one is assumed to stand there.
     """
     field, row = frame.field, np.empty(_SIZE)
     goal_x, half_goal = field.half_length, field.goal_width / 2

@@ -1,4 +1,4 @@
-"""What skills and worlds draw on the field for whoever looks, by layer: paths, thoughts, numbers."""
+"""Drawings of skills and worlds on the field for viewers, in layers: paths, plans, numbers."""
 
 from __future__ import annotations
 
@@ -27,10 +27,10 @@ _LARGEST = 1e9
 
 
 class Sketch:
-    """Takes what is drawn in one tick, of the layers that somebody looks at, and nothing of the others.
+    """Records one tick's drawings in the watched layers only.
 
-    Points are in the view in which whoever draws sees the field, in metres. What cannot be drawn, as a
-    point that is not finite, is left out: whether somebody looks must not change a match.
+    Points are in the drawer's view of the field, in metres. Invalid shapes, such as points that are not
+    finite, are left out, because watching must not change a match.
 
     Attributes:
         layers: the names that were drawn to, wanted or not, several sketches may share them;
@@ -45,11 +45,11 @@ class Sketch:
         self.layers: set[str] = set()
 
     def want(self, layers: Container[str], known: set[str]) -> None:
-        """Draw these layers from now on, and enter the names of all in ``known``."""
+        """Record these layers from now on, and add the names of all layers to ``known``."""
         self._wanted, self.layers = layers, known
 
     def wants(self, layer: str) -> bool:
-        """Return whether somebody looks at a layer: ask before computing what is only drawn."""
+        """Return whether a layer is watched; check this before computing values only for drawing."""
         if layer in self.layers:
             return layer in self._wanted
         if isinstance(layer, str) and len(layer) <= _LONGEST_NAME and len(self.layers) < MOST_LAYERS:
@@ -92,7 +92,7 @@ class Sketch:
             self._draw(layer, "number", (value,), name)
 
     def take(self) -> list[Shape]:
-        """Return what was drawn since this was asked last."""
+        """Return the shapes drawn since the last call."""
         if not self._shapes:
             return []
         shapes, self._shapes = self._shapes, []

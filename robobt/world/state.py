@@ -1,4 +1,4 @@
-"""What is on the field at one instant. Made anew every tick, read-only by convention.
+"""The state of the field at one instant: new objects in every tick, read-only by convention.
 
 These are plain slotted classes, not frozen ones: a frozen dataclass costs about
 three times as much to make, and a match makes some forty of them a tick.
@@ -27,7 +27,7 @@ ROBOT_HEIGHT = 0.15
 """Height of the tallest robot the rules allow; a ball above it passes over robots [m]."""
 
 RECEIVED_HEIGHT = 0.05
-"""Below it a ball can be kicked and held. Source: ER-Force's simulator and Sumatra [m]."""
+"""Height below which a ball can be kicked and held [m]. Source: ER-Force's simulator and Sumatra."""
 
 GOAL_HEIGHT = 0.155
 """Height of a goal's inside, up to its bar. Source: ER-Force's simulator; the rules say 0.16 [m]."""
@@ -108,14 +108,14 @@ class BallState:
 
 
 class Derived:
-    """What follows from a frame and many ask for: worked out once, and kept with it."""
+    """A value derived from a frame, computed once and cached with it."""
 
     __slots__ = ("_made",)
     _made: dict[str, FloatArray]
 
     @property
     def made(self) -> dict[str, FloatArray]:
-        """What has been worked out so far; to be cleared by whoever changes the frame."""
+        """The cached values; clear them after changing the frame."""
         try:
             return self._made
         except AttributeError:
@@ -131,11 +131,11 @@ class Frame(Derived):
         time: seconds since the start; the only clock a tree may read [s].
         period: seconds from this frame to the next [s].
         field: dimensions.
-        team: whose view this is.
+        team: the team whose view this is.
         ball: the ball.
         own, opponents: robots on the field, in order of their numbers.
         game: the state of the game.
-        last_touch: who touched the ball last, None before anybody did.
+        last_touch: the robot that touched the ball last, None before the first touch.
         ball_model: how the ball moves, as far as known.
     """
 
@@ -178,7 +178,7 @@ class Frame(Derived):
         return field_svg(title, self.field, goals, robots, at, (ROBOT_RADIUS, BALL_RADIUS))
 
     def packed(self) -> bytes:
-        """Return all of its numbers but the game's, as little-endian float64.
+        """Return all its numbers except the game's, as little-endian float64.
 
         Time; x, y, vx, vy of the ball; how many own robots there are, and the id, x, y, heading,
         vx, vy, omega and ball contact of each; the same of the opponents; z and vz of a ball in the air.

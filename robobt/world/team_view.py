@@ -1,4 +1,4 @@
-"""The observation of a robot in a team: itself, the ball, both goals and who is near; defined once."""
+"""The observation of a robot in a team: itself, the ball, both goals and nearby robots."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from robobt.world.scoring import FAR_OFF, KICK_SPEED
 from robobt.world.state import Frame, RobotState
 
 AWAY = 5.0
-"""Nobody is observed as one at rest so far behind [m]."""
+"""An empty place shows a resting robot this far behind [m]."""
 
 BALL = 7
 """Index of the ball's place."""
@@ -46,14 +46,14 @@ _ITSELF = (
 _SEEN = record_of(_ITSELF)
 _OWN, _EACH = len(_ITSELF), 4
 _TOLD = ("", "_restarts", "_restarts_double_touch")
-"""Ends of the name: whether it tells of no restarts, of whose ball it is, or also of who may not touch it."""
+"""Suffixes of the name: no restarts, the team of a restart, or also the robot that may not touch the ball."""
 
 _NAME = re.compile(r"team_view_(\d|10)_(\d|1[01])(|_restarts|_restarts_double_touch)")
 _ME = np.zeros(1, dtype=np.int64)
 
 
 class Places(NamedTuple):
-    """For how many mates and opponents there are places, and how many entries tell of restarts."""
+    """Number of places for team-mates and opponents, and number of entries on restarts."""
 
     mates: int
     opponents: int
@@ -61,15 +61,15 @@ class Places(NamedTuple):
 
 
 def team_view(mates: int, opponents: int, told: int = 0) -> ObservationSpec:
-    """Return the observation with places for so many mates and opponents, the nearest first.
+    """Return the observation with this number of places for team-mates and opponents, the nearest first.
 
-    Velocities are those over the field, in the robot's frame, as are positions but ``x``, ``y`` and the
-    heading: these are the team's, which attacks towards +x. ``aim`` is where a kick would cross the goal
-    line, from its middle, at most 1 m either way; ``lane`` how far to the left of that shot the opponent is
-    who is nearest to it, at most 0.5 m either way, 0.5 without any on the way.
+    Velocities are relative to the field. Velocities and positions are in the robot's frame; only ``x``, ``y``
+    and the heading are in the frame of the team, which attacks towards +x. ``aim`` is where a kick would
+    cross the goal line, from its middle, at most 1 m either way; ``lane`` is how far to the left of that shot
+    the nearest opponent is, at most 0.5 m either way, 0.5 without an opponent on the way.
 
-    ``told`` is how many entries of the league's restarts follow, 0, 1 or 2: ``restart``, 1 where the ball is
-    the own team's to play, -1 where it is the others', 0 in play; and ``barred``, 1 for who took the last
+    ``told`` is the number of entries on the league's restarts that follow, 0, 1 or 2: ``restart`` is 1 if the
+    own team may play the ball, -1 if the others may, 0 in play; ``barred`` is 1 if the robot took the last
     restart and may not touch the ball before another robot has, else 0.
     """
     others = [f"mate_{k}" for k in range(mates)] + [f"opponent_{k}" for k in range(opponents)]
@@ -89,7 +89,7 @@ def team_view(mates: int, opponents: int, told: int = 0) -> ObservationSpec:
 
 
 def places_of(name: str) -> Places | None:
-    """Return the places that the observation of that name has; None: no such."""
+    """Return the places of the observation of that name, or None."""
     found = _NAME.fullmatch(name)
     if found is None:
         return None
@@ -102,7 +102,7 @@ def team_view_of(
 ) -> FloatArray:
     """Compute the state :func:`team_view` of one robot in a frame, (size,).
 
-    ``barred`` says whether it may not touch the ball after its own restart, which no frame tells.
+    ``barred`` says whether it may not touch the ball after its own restart, which frames do not contain.
     """
     team = [robot, *(mate for mate in frame.own if mate.id != robot.id)]
     robots = np.array([kinematics(each) for each in (*team, *frame.opponents)])
@@ -141,12 +141,12 @@ def team_view_rows(
         robots: (n, R, 6) x, y, heading, vx, vy, omega in field coordinates.
         balls: (n, 4) x, y, vx, vy.
         who: (L,) indices of the robots that observe.
-        blue: how many robots, the first, attack towards +x; the others towards -x.
-        mates: places for them.
-        opponents: likewise.
+        blue: number of robots, the first ones, that attack towards +x; the others towards -x.
+        mates: number of places for team-mates.
+        opponents: number of places for opponents.
         goal_x: where the goal lines are, either way [m].
         post_y: distance of the posts from the field's long axis [m].
-        told: how many entries of restarts follow each, left at 0.
+        told: number of entries on restarts that follow each, left at 0.
     """
     places = Places(mates, opponents, told)
     rows = np.empty((len(robots), len(who) * _size(places)))
@@ -191,7 +191,7 @@ def _fill_rows(
 def _observe(
     robots: Sequence[Robot], ball: Ball, index: int, first: int, last: int, goal: Point, row: FloatArray
 ) -> Point:
-    """Fill in what is no robot; return cosine and sine of the heading."""
+    """Fill in all entries except robots; return cosine and sine of the heading."""
     me, sign = robots[index], 1.0 if first == 0 else -1.0
     c, s = cos(me.heading), sin(me.heading)
     goal_x, left = sign * goal[0], sign * goal[1]

@@ -1,1 +1,1 @@
-"""Contacts of robots, ball and walls over arrays, where pymunk is not asked."""
+"""Contacts of robots, ball and walls over arrays, without pymunk."""

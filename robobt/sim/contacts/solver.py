@@ -1,4 +1,4 @@
-"""Contacts of robots, ball and walls, compiled over arrays: for arenas by the hundred.
+"""Contacts of robots, ball and walls, compiled over arrays, for hundreds of arenas.
 
 An arena has few bodies, and all of them are round to what they meet but a robot's hull, which meets only
 the ball. So every contact has one point, and finding it takes a distance. What follows is a step of
@@ -46,13 +46,13 @@ from robobt.world.compiled import compiled_inline, compiled_lean
 from robobt.world.geometry import FloatArray
 
 _SETTLED = 1e-12
-"""After a pass over the contacts that changed no impulse by more than this there is no other [N s]."""
+"""The passes end when no impulse changes by more than this [N s]."""
 
 _LONG_AGO = -1e9
 
 
 class ContactArrays(NamedTuple):
-    """What the solver knows of ``n`` arenas with R robots each, as numbers."""
+    """The solver's arrays for ``n`` arenas with R robots each."""
 
     walls: FloatArray  # (W, size(WALL))
     edges: FloatArray  # (E, size(EDGE)) of all parts of a hull
@@ -65,7 +65,7 @@ class ContactArrays(NamedTuple):
     moving: FloatArray  # (R + 2, size(MOVING)) scratch
 
     def forget(self, arenas: IntArray | int | slice) -> None:
-        """Forget what touched in these arenas: bodies have been put elsewhere."""
+        """Forget the contacts in these arenas, because bodies have been placed elsewhere."""
         self.bias[arenas] = 0.0
         self.memory.view(MEMORY)["when"][arenas] = _LONG_AGO
 
@@ -79,7 +79,7 @@ class ContactArrays(NamedTuple):
 def contact_arrays(
     settings: SimSettings, robots: int, walls: Sequence[tuple[Box, str]], n: int
 ) -> ContactArrays:
-    """Return the solver's arrays of ``n`` arenas with so many ``robots``, before anything touches."""
+    """Return the solver's arrays for ``n`` arenas with this many ``robots``, without contacts."""
     materials = material_of(settings.contact)
     hull = outlines(settings)
     edges: list[tuple[float, float, float, float]] = []
@@ -123,7 +123,7 @@ def contact_arrays(
 
 
 class Solving(NamedTuple):
-    """What the solver works with in one arena."""
+    """The solver's view of one arena."""
 
     masses: Masses
     bias: Records[Bias]  # (R + 1,)
@@ -167,7 +167,7 @@ def collide(bodies: Records[Body], shapes: Shapes, it: Solving, dt: float) -> No
 
 @compiled_inline
 def _prepare(bodies: Records[Body], solver: Solver, it: Solving, count: int, dt: float) -> None:
-    """Compute what the contacts ask for, and apply again the impulses of the last step."""
+    """Prepare the contacts, and apply the impulses of the last step again."""
     robots, clock = len(bodies) - 1, it.masses.clock
     for i in range(robots + 2):
         moving = it.moving[i]

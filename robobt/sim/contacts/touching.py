@@ -11,7 +11,7 @@ from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS
 
 
 class Shapes(NamedTuple):
-    """What bodies can touch, the same in all arenas."""
+    """The shapes that bodies can touch, equal in all arenas."""
 
     walls: Records[Wall]  # (W,) relative to an arena's centre
     edges: Records[Edge]  # (E,) of all parts of a hull
@@ -21,7 +21,7 @@ class Shapes(NamedTuple):
 
 @compiled_inline
 def find(bodies: Records[Body], shapes: Shapes, contacts: Records[Contact]) -> int:
-    """Fill in the contacts there are; return how many.
+    """Fill in the contacts; return their number.
 
     Args:
         bodies: (R + 1,) robots and ball.
@@ -141,7 +141,7 @@ def _to_box(x: float, y: float, box: Wall) -> tuple[float, float, float]:
 
 @compiled_lean
 def _to_outline(x: float, y: float, edges: Records[Edge], part: Part) -> tuple[float, float, float]:
-    """Return the same for a convex outline, which may have no more than one corner."""
+    """Return direction and distance for a convex outline, which may have only one corner."""
     first, last = int(part.first), int(part.last)
     inside = last > first + 1
     best, bx, by, ex, ey = inf, 0.0, 0.0, 0.0, 0.0
