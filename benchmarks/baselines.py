@@ -265,7 +265,7 @@ def train_sb3(
     rows = ArenasVecEnv(cast("TaskVectorEnv", gymnasium.make_vec(name, ROWS[algorithm], **how)))
     changes: dict[str, Any] = {}
     if algorithm == "ppo":
-        # Of 2,048 steps of each of so many robots there would be few updates.
+        # With 2,048 steps of each of these robots there would be few updates.
         changes = {"n_steps": 40, "batch_size": 1280}
     if algorithm == "td3":
         actions = cast("tuple[int]", rows.action_space.shape)[0]

@@ -28,8 +28,8 @@ def engines(
 ) -> None:
     """Play the same trials on local processes and on another engine, in turns.
 
-    Of each turn the last nine tenths of the trials are timed: local processes start anew for each, those of a
-    cluster stay. An engine compiles before its first turn, which is not counted.
+    Of each turn the last nine tenths of the trials are timed: local processes are started for each, those of
+    a cluster stay. An engine compiles before its first turn, which is not counted.
 
     Keys of --json: trials, workers, local_s and engine_s (seconds for nine tenths of the trials, medians),
     local_start_s and engine_start_s (until then), overhead (engine over local, less 1), identical (whether

@@ -42,7 +42,7 @@ Errors = dict[str, dict[str, list[float]]]
 """Errors by time of comparison and by quantity."""
 
 Rms = dict[str, dict[str, float]]
-"""Root mean squares of the errors, likewise."""
+"""Root mean squares of the errors."""
 
 
 def bench_filter(
@@ -125,7 +125,7 @@ class _Watcher:
 def _straight(
     real: SimSettings, seen: SimSettings, seconds: float, cameras: int, rng: np.random.Generator
 ) -> Rms:
-    """Repeat runs across the field for so many seconds."""
+    """Repeat runs across the field for a number of seconds."""
     robots = [RobotId(team, number) for team in Team for number in range(4)]
     errors: Errors = {}
     for _ in range(max(1, round(seconds / _RUN))):

@@ -37,7 +37,7 @@ with connect(url, origin=f"http://{host}", max_size=None, max_queue=4, compressi
         message = json.loads(text)
         if message["kind"] == "now" and message["chunks"]:
             print(round(1000.0 * time.time() - message["chunks"][-1]["at"], 1), flush=True)
-        # As long as so many bits take on a link of this rate.
+        # The time that these bits take on a link of this rate.
         if rate:
             time.sleep(len(text) * 8.0 / rate)
 """
@@ -67,7 +67,7 @@ class LiveFigures(TypedDict):
 
 
 class _Viewer:
-    """A viewer's process and the ages that it has told [ms]."""
+    """A viewer's process and the ages that it has reported [ms]."""
 
     def __init__(self, server: Server, rate: float = 0.0, rest: float = 0.0) -> None:
         host = server.url.split("/")[2]

@@ -1,4 +1,4 @@
-"""``python -m benchmarks measurements``: the figures of ``docs/measurements``, and which to measure anew."""
+"""``python -m benchmarks measurements``: the figures of ``docs/measurements``, and which to repeat."""
 
 from __future__ import annotations
 
@@ -107,7 +107,7 @@ def measurements(
     ] = False,
     as_json: Json = False,
 ) -> None:
-    """List the figures of docs/measurements, or those to measure anew.
+    """List the figures of docs/measurements, or those to repeat.
 
     A figure rests on rooms of the package. It is stale when one of them behaves otherwise than at the commit
     of the figure: short runs with fixed seeds, by their hashes. Hashes are compared on one kind of processor.
@@ -139,7 +139,7 @@ def measurements(
 
 
 def _record(kept: dict[str, Any], now: Mapping[str, str]) -> None:
-    """Add the hashes at this commit to the file; on another processor begin it anew."""
+    """Add the hashes at this commit to the file; on another processor start a new file."""
     commit = source_commit()
     if not _COMMIT.fullmatch(commit):
         problem = "commit the changes first" if commit else "this is no clone of the repository"

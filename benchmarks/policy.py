@@ -38,9 +38,8 @@ def bench_policy(
 
     Returns:
         ``leaf_to_module_ratio``, a tick of :class:`LearnedSkill` over a call of the bare
-        frozen module; ``skill_to_module_ratio``, the same of the model's own skill
-        (GoToBall or Shoot), where it has one; and the microseconds that they come from,
-        under names in ``_us``.
+        frozen module; ``skill_to_module_ratio``, that ratio for the model's own skill (GoToBall or Shoot),
+        where it has one; and the microseconds that they come from, under names in ``_us``.
 
     Raises:
         ModelError: the model cannot be used, or is not a TorchScript file.
@@ -93,8 +92,8 @@ def policy(
 
     Keys of --json: leaf_to_module_ratio (a whole tick of LearnedSkill, from the
     frame to the command, over a call of the module on a tensor),
-    skill_to_module_ratio (the same of the model's own skill) and the
-    microseconds that they come from. CPU time, medians.
+    skill_to_module_ratio (that ratio for the model's own skill) and the microseconds that they come from. CPU
+    time, medians.
     """
 
     torch.set_num_threads(1)

@@ -32,7 +32,7 @@ _ROUNDS = 30
 
 
 class CrossValidationFigures(NamedTuple):
-    """A cross-validation of so many networks, all at once and one after the other [s, of the processor]."""
+    """A cross-validation of a number of networks, all at once and one after the other [CPU s]."""
 
     cross_validation_s: float
     cross_validation_loop_s: float

@@ -45,7 +45,7 @@ def bench_arenas(
 
     Args:
         seconds: CPU time for each figure. They begin in a ring of 0.8 m around the ball, meet within a second
-            that does not count, and begin anew after two more: the same play whatever their number. The
+            that does not count, and restart after two more: the same play whatever their number. The
             median step counts.
         sides: robots a team.
         arenas: how many of them.

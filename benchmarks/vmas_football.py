@@ -4,7 +4,7 @@
     python -m benchmarks vmas_football
 
 All six robots are learners that act at random: on either side observations and rewards of all of them are
-in the time, and episodes that start anew. A step of VMAS is 0.1 s of circles in two sub-steps; one of ours a
+in the time, and restarts of episodes. A step of VMAS is 0.1 s of circles in two sub-steps; one of ours a
 decision of two control periods, 60 ms in eight physics steps, with hulls, dribblers, kicks and the league's
 rules. The fastest of several chunks counts, taken in turn.
 """
@@ -70,7 +70,7 @@ def ours(n: int) -> tuple[Callable[[], object], float]:
 
 
 def theirs(n: int) -> tuple[Callable[[], object], float]:
-    """Return the same of VMAS."""
+    """Return the figures of VMAS."""
     import vmas  # type: ignore[import-not-found]  # an optional dependency of this benchmark alone
 
     env = vmas.make_env(

@@ -95,7 +95,7 @@ class Table2:
 def table2(
     sets: ShotSets, replications: int = 10, seed: int = 0, progress: Callable[[], object] = lambda: None
 ) -> Table2:
-    """Replicate the table; folds, hold-outs and seeds are drawn anew each time, from ``seed`` on.
+    """Replicate the table; folds, hold-outs and seeds are drawn again each time, from ``seed`` on.
 
     The training shots alone are used. Beside the paper's regression, which
     liblinear regularises unevenly on raw millimetres and radians, stands the same

@@ -34,7 +34,7 @@ class HumanRuns:
             if self._live.tick(match):
                 return True
             if match.outcome is None:
-                # Not to be chosen anew: the paper's person had 25 runs.
+                # Fixed: the paper's person had 25 runs.
                 self._live.forget_reset()
                 return not self._live.ended
             self._live.linger(match, self._look)

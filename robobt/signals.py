@@ -1,4 +1,4 @@
-"""Signals that end a program: never lost, and never in the middle of what has to be whole.
+"""Signals that end a program: never lost, and never in the middle of an uninterruptible block.
 
 Within :func:`ending`, SIGTERM and SIGHUP raise :class:`Terminated` and SIGINT raises
 KeyboardInterrupt in the main thread, wherever it is, so that files are finished and robots
@@ -35,7 +35,7 @@ TERMINATE: tuple[int, ...] = tuple(
 
 
 class Terminated(SystemExit):
-    """The process was told to end by the signal ``number``; uncaught, it gives that signal's exit status."""
+    """The signal ``number`` asked the process to end; uncaught, it gives that signal's exit status."""
 
     def __init__(self, number: int) -> None:
         super().__init__(_BASE + number)
@@ -60,7 +60,7 @@ class _Uninterrupted:
 
 
 class _Told:
-    """What the process has been told.
+    """The signal that the process has received.
 
     Attributes:
         number: the signal, None before one has come.

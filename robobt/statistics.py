@@ -192,7 +192,8 @@ def mcnemar(first: ArrayLike, second: ArrayLike) -> McNemar:
         raise ValueError("both lists must judge the same trials")
     only_first, only_second = int((a & ~b).sum()), int((b & ~a).sum())
     fewer, trials = min(only_first, only_second), only_first + only_second
-    # As few or fewer of so many tosses of a coin, in logarithms: there may be a million.
+    # The probability of at most this many heads in n tosses of a coin, in logarithms because n may be a
+    # million.
     k = np.arange(fewer)
     ways = np.concatenate([[0.0], np.cumsum(np.log((trials - k) / (k + 1.0)))]) - trials * log(2.0)
     p = 1.0 if 2 * fewer == trials else min(1.0, 2.0 * float(np.exp(ways).sum()))
@@ -229,8 +230,8 @@ _BETS = np.array([0.1, 0.3, 0.5, 0.7, 0.9])
 def surely_negative(values: ArrayLike, error: float = 0.05) -> int | None:
     """Return after how many values, looked at one by one, their mean is surely negative; None: never.
 
-    However many values come and however they are distributed, a mean of 0 or more is called negative at
-    most so often as ``error``: who bets fairly that it is wins 1 / ``error`` times the stake so seldom.
+    For any number and distribution of values, a mean of 0 or more is called negative with a probability of at
+    most ``error``, because a fair bet wins 1 / ``error`` times the stake with at most that probability.
 
     Args:
         values: (n,) in the order in which they came, each -1 to 1.
@@ -281,7 +282,7 @@ class ReliabilityBin:
 
 
 def reliability(probabilities: ArrayLike, outcomes: ArrayLike, bins: int = 10) -> list[ReliabilityBin]:
-    """Compare what was predicted with what came true; return bins of equal width without the empty ones.
+    """Compare predictions with outcomes; return the non-empty bins of equal width.
 
     ``probabilities`` (n,) were predicted; ``outcomes`` (n,) are 0 or 1.
 

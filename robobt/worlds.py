@@ -92,7 +92,7 @@ class Match(MatchLoop):
     """A match that is played tick by tick, in the built-in simulator unless another world is given.
 
     Args:
-        scenario: what is played.
+        scenario: the scenario to play.
         seed: fixes placement, world and trees; the scenario's by default.
         world: an address as for :func:`world_from`, or a factory.
         record: file to record the match to; its name ends in ``.robobt.arrows``.
@@ -124,7 +124,7 @@ def play_match(
     """Play one match to its end.
 
     Args:
-        scenario: what is played.
+        scenario: the scenario to play.
         seed: fixes placement, world and trees; the scenario's by default.
         world: an address as for :func:`world_from`, or a factory.
         record: file to record the match to.
@@ -157,7 +157,7 @@ def run_trials(
     Errors are those of :func:`robobt.match.runner.run_trials_in`.
 
     Args:
-        scenario: what is played.
+        scenario: the scenario to play.
         trials: number of trials; the scenario's by default.
         world: an address as for :func:`world_from`, or a factory.
         seed: seed from which the trials' seeds follow; the scenario's by default.

@@ -35,8 +35,8 @@ def table2(
 ) -> None:
     """Print Table 2: the network against logistic regression in a 10 x 10 cross-validation.
 
-    Folds, hold-outs and seeds are drawn anew for every replication. The third row
-    is logistic regression on standardised inputs.
+    Folds, hold-outs and seeds are drawn again for every replication. The third row is logistic regression on
+    standardised inputs.
 
     Keys of --json: source, shots, goals, replications, seed; hold_outs, by share
     (33%, 25%): paper (the published row); network, logistic and standardised, the

@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 
 
 _FEW = 100
-"""So many runs take less time than processes of this machine take to start."""
+"""This many runs take less time than the start of worker processes."""
 
 
 @dataclass(frozen=True)

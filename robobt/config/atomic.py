@@ -1,4 +1,4 @@
-"""Atomic files: readers find the old or the new one, whole, even after a crash."""
+"""Atomic file writes: readers find the complete old or new file, even after a crash."""
 
 from __future__ import annotations
 
@@ -22,11 +22,11 @@ def write_atomically(path: Path, content: bytes | str) -> None:
 
 @contextmanager
 def replacing(path: Path) -> Iterator[Path]:
-    """Give the path of a temporary file that takes the place of ``path`` when the block ends.
+    """Yield the path of a temporary file that replaces ``path`` when the block ends.
 
-    The temporary file lies in the same folder and its name ends like that of ``path``. It is removed when the
-    block raises. A link stays, and what it leads to is replaced. A device or a pipe, such as ``/dev/stdout``,
-    is written to as it is.
+    The temporary file is in the same folder and its name ends like that of ``path``. It is removed if the
+    block raises. A link stays, and its target is replaced. A device or a pipe, such as ``/dev/stdout``, is
+    written to directly.
 
     Raises:
         OSError: the file cannot be put in place; the error names ``path``.

@@ -1,4 +1,4 @@
-"""What is closed at the end of a ``with`` block."""
+"""Objects that are closed at the end of a ``with`` block."""
 
 from __future__ import annotations
 
@@ -6,12 +6,12 @@ from typing import Self
 
 
 class Closing:
-    """Something with a ``close``, which ``with`` calls at the end of its block."""
+    """An object whose ``close`` is called at the end of a ``with`` block."""
 
     __slots__ = ()
 
     def close(self) -> None:
-        """Let go of whatever this holds."""
+        """Release all resources."""
         raise NotImplementedError
 
     def __enter__(self) -> Self:

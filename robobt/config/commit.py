@@ -1,4 +1,4 @@
-"""Which commit of robobt is running, for what is made with it and kept: models and training runs."""
+"""The commit of robobt that is running, stored in models and training runs."""
 
 from __future__ import annotations
 
@@ -8,25 +8,25 @@ from pathlib import Path
 
 PACKAGE = Path(__file__).resolve().parents[1]
 BUILT_FROM = PACKAGE / "commit.txt"
-"""Where a wheel says from which commit it was built; see ``hatch_build.py``."""
+"""File in a wheel with the commit it was built from; see ``hatch_build.py``."""
 
 _PATIENCE = 10.0
-"""How long git may take [s]."""
+"""Timeout for git [s]."""
 
 
 @cache
 def source_commit() -> str:
-    """Return the commit of the code, as git writes it, with "+" behind it where files were changed since.
+    """Return the commit of the code, as git writes it, followed by "+" if files were changed since.
 
-    Empty where that is unknown: neither a checkout nor a wheel that was built from one.
+    Empty if unknown: neither a checkout nor a wheel that was built from one.
     """
     return commit_of(PACKAGE) or (BUILT_FROM.read_text("ascii").strip() if BUILT_FROM.is_file() else "")
 
 
 def commit_of(package: Path) -> str:
-    """Return the commit of a folder that git keeps, as :func:`source_commit` does; empty for any other.
+    """Return the commit of a folder tracked by git, as :func:`source_commit` does; empty for any other.
 
-    An installed package may lie in a folder of somebody else's repository, which does not keep it.
+    An installed package may be in a folder of another repository that does not track it.
     """
     if _git(package, "ls-files", "--error-unmatch", "__init__.py") is None:
         return ""

@@ -80,16 +80,16 @@ def short_repr(value: object) -> str:
 
 
 FEW = 6
-"""So many names are listed even where one was probably meant."""
+"""Number of names listed even if one was probably meant."""
 
 
 def unknown_name(name: object, known: Iterable[str], there_are: str = "there are") -> str:
-    """Return how a message about an unknown name ends: which was meant, or which there are, or both if few.
+    """Return the end of a message about an unknown name: the likely name, the known ones, or both if few.
 
     Args:
         name: the unknown name.
-        known: the names there are.
-        there_are: what comes before their list.
+        known: the known names.
+        there_are: words in front of their list.
     """
     there = list(known)
     meant = close_names(str(name), there) if len(there) > 1 else []
@@ -101,7 +101,7 @@ def unknown_name(name: object, known: Iterable[str], there_are: str = "there are
 
 
 def close_names(name: str, known: Iterable[str]) -> list[str]:
-    """Return the three known names at most that are most like this one, whatever their case and hyphens."""
+    """Return up to three known names most similar to this one, ignoring case and hyphens."""
     plain = {_plain(each): each for each in known}
     asked = _plain(name)
     close = get_close_matches(asked, plain, n=3, cutoff=0.66)

@@ -25,7 +25,7 @@ EXTRAS = {
     "stable_baselines3": "sb3",
     "websockets": "live",
 }
-"""By the name under which a package is imported, the extra that brings it."""
+"""The extra that installs a package, by the package's import name."""
 
 _DISTRIBUTIONS = {
     "foxglove_schemas_protobuf": "foxglove-schemas-protobuf",
@@ -38,7 +38,7 @@ _DISTRIBUTIONS = {
 
 
 class MissingExtraError(RobobtError, ImportError):
-    """Something needs an extra that is not installed; the message says how to install it."""
+    """A feature needs an extra that is not installed; the message says how to install it."""
 
     def __init__(self, package: str, extra: str) -> None:
         named = _DISTRIBUTIONS.get(package.partition(".")[0], package)
@@ -46,7 +46,7 @@ class MissingExtraError(RobobtError, ImportError):
 
 
 def need(extra: str, *packages: str) -> None:
-    """Check that an extra's packages are there, by the names under which they are imported.
+    """Check that an extra's packages are installed, by their import names.
 
     Raises:
         MissingExtraError: one is not.
@@ -64,7 +64,7 @@ def _is_there(package: str) -> bool:
 
 
 def missing_extra(error: BaseException) -> MissingExtraError | None:
-    """Return the readable error for a failed import of a package that an extra brings, else None."""
+    """Return the readable error for a failed import of an extra's package, else None."""
     package = str(getattr(error, "name", "")).partition(".")[0]
     if not isinstance(error, ModuleNotFoundError) or package not in EXTRAS:
         return None

@@ -1,4 +1,4 @@
-"""Pictures of figures, written whole or not at all."""
+"""Pictures of figures, written completely or not at all."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Users' code leaves this process as it found it: in the same folder, and there is no second one."""
+"""Protects this process from users' code that changes the working folder or forks."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ _log = logging.getLogger(__name__)
 
 
 class OwnProcess:
-    """Notices that code run since this was made has changed the working folder or forked the process."""
+    """Detects that code run since its creation has changed the working folder or forked the process."""
 
     def __init__(self) -> None:
         self._number, self._folder = os.getpid(), _working_folder()
@@ -49,7 +49,7 @@ def _working_folder() -> str | None:
     try:
         return os.getcwd()
     except OSError:
-        # Somebody has removed it.
+        # The folder has been removed.
         return None
 
 

@@ -1,7 +1,7 @@
-"""What ships with robobt: scenario files and models.
+"""Files shipped with robobt: scenarios and models.
 
-In a checkout they lie beside the package (``examples/scenarios``, ``models``);
-a wheel carries them inside it (``robobt/_data``).
+In a checkout they are beside the package (``examples/scenarios``, ``models``); a wheel carries them inside it
+(``robobt/_data``).
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""What only some operating systems can do, and how one that cannot says so."""
+"""Features that only some operating systems have, and the error for the others."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from robobt.config.errors import RobobtError
 
 
 class SystemUnfitError(RobobtError, OSError):
-    """Something that this operating system cannot do; the message says which ones can."""
+    """This operating system lacks a feature; the message says which ones have it."""
 
 
 def need_posix(what: str) -> None:

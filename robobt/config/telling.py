@@ -1,17 +1,17 @@
-"""What the log tells people."""
+"""The log messages for users."""
 
 from __future__ import annotations
 
 import logging
 
 OFTEN = ("robobt.tree.runner", "robobt.match.players")
-"""Loggers that say the same thing every tick while a tree raises."""
+"""Loggers that repeat a message in every tick while a tree raises."""
 
 
 def tell_warnings(debug: bool = False) -> None:
-    """Let warnings through, as a program does; all there is to say when ``debug``.
+    """Show warnings, as for a program; show all messages with ``debug``.
 
-    What trees raise is counted in the results; a line on stderr each tick helps nobody.
+    Exceptions of trees are counted in the results; a line on stderr in each tick would not help.
     """
     logging.getLogger("robobt").setLevel(logging.DEBUG if debug else logging.WARNING)
     for often in OFTEN:

@@ -1,4 +1,4 @@
-"""Validation of plain data by pydantic, with one readable line for whatever does not fit."""
+"""Validation of plain data by pydantic, with one readable line per error."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _WORDS = {
     " after validation": "",
     "an object": "a mapping",
 }
-"""What pydantic says, and what people call it who write a file."""
+"""pydantic's terms, and the terms for people who write files."""
 
 
 class Settings(BaseModel):

@@ -1,4 +1,4 @@
-"""Where work runs: in this process, in worker processes, on a Ray cluster."""
+"""Engines that run work: in this process, in worker processes, or on a Ray cluster."""
 
 from typing import TYPE_CHECKING
 

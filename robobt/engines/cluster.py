@@ -1,4 +1,4 @@
-"""Tasks on a Ray cluster: one that is there, or one of this machine's cores."""
+"""Tasks on a Ray cluster: an existing one, or a new one of this machine's cores."""
 
 from __future__ import annotations
 
@@ -26,13 +26,13 @@ from robobt.config.telling import tell_warnings
 from robobt.engines.work import ReportT, ResultT, TaskT, Work
 
 _ATTEMPTS = 4
-"""How often a task is tried whose worker or node is lost: it may be the task itself that ends it."""
+"""Number of tries of a task whose worker or node is lost, because the task itself may be the cause."""
 
 _LONG, _MOST = 1.0, 32
-"""Short tasks are sent together: for so long, as far as is known [s], and no more than so many."""
+"""Short tasks are sent in batches of about this duration [s], and of at most this many."""
 
 _POLL = 0.5
-"""How long a result is waited for at a time: reports and signals are looked at in between [s]."""
+"""Longest wait for a result at a time; reports and signals are checked in between [s]."""
 
 
 class ClusterError(RobobtError, RuntimeError):
@@ -42,7 +42,7 @@ class ClusterError(RobobtError, RuntimeError):
 class RayEngine(Closing):
     """Runs tasks on a Ray cluster. A context manager; the cluster is left at its end.
 
-    A task whose worker or node is lost is done again, elsewhere.
+    A task whose worker or node is lost is run again, elsewhere.
 
     Args:
         address: "ray" for the cluster that Ray finds (``RAY_ADDRESS``, or one of this machine), or else a
@@ -51,7 +51,7 @@ class RayEngine(Closing):
             its models (by default for ray:// only).
 
     Attributes:
-        workers: how many tasks the cluster can do at a time.
+        workers: number of tasks that the cluster can run at a time.
 
     Raises:
         ClusterError: Ray is not installed, the address is wrong, or the cluster cannot be reached.
@@ -59,7 +59,7 @@ class RayEngine(Closing):
 
     def __init__(self, address: str) -> None:
         where, cpus, ship = _read(address)
-        # Ray reports its use to its makers unless it is told not to.
+        # Ray sends usage statistics to its makers unless this is set.
         os.environ.setdefault("RAY_USAGE_STATS_ENABLED", "0")
         try:
             import ray
@@ -137,7 +137,7 @@ class RayEngine(Closing):
                         answers, seconds = ray.get(reference)
                     except ray.exceptions.RayError as error:
                         if len(batch) > 1 or attempt < _ATTEMPTS:
-                            # One by one, so that a task that ends its worker harms no other.
+                            # One by one, so that a task that ends its worker does not affect others.
                             again.extend([(task, attempt + (len(batch) == 1)) for task in batch])
                             continue
                         died = f"lost {attempt} times: {one_line(str(error), 200)}"
@@ -171,19 +171,19 @@ class RayEngine(Closing):
         try:
             self._ray.init(**options)
         except ValueError:
-            # A cluster that is there already has its own mind about the dashboard.
+            # An existing cluster has its own setting for the dashboard.
             options.pop("include_dashboard", None)
             self._ray.init(**options)
 
 
 _works: dict[bytes, Work[Any, Any, Any]] = {}
-"""What this worker knows how to do: a worker does many tasks of the same work."""
+"""The work loaded in this worker, which runs many tasks of it."""
 
 
 def _do(
     key: bytes, packed: bytes, folder: str, tasks: list[object], reports: Any
 ) -> tuple[list[tuple[str, object]], float]:
-    """Do tasks in a worker of the cluster, and tell how long they took [s].
+    """Run tasks in a worker of the cluster, and return their durations [s].
 
     Exceptions are returned, for Ray would wrap them; one ends the batch.
     """
@@ -212,7 +212,7 @@ def _do(
 
 
 def _ignore(message: object) -> None:
-    """Drop a report that nobody asked for."""
+    """Drop a report that was not requested."""
 
 
 def _read(address: str) -> tuple[str | None, float, bool]:

@@ -22,10 +22,10 @@ from robobt.engines.work import ReportT, ResultT, TaskT, Work
 from robobt.signals import TERMINATE, ending, let_go, uninterrupted
 
 _REACTION = 0.4
-"""How long a worker that is told to end may take to finish its files [s]."""
+"""Time for a worker to finish its files when asked to end [s]."""
 
 _LOOK = 1.0
-"""How often to look for workers whose end nothing shows: a process that they forked keeps it open [s]."""
+"""Interval for checking workers whose connection stays open after their end, held by a forked process [s]."""
 
 
 def run_locally(
@@ -101,7 +101,7 @@ def run_locally(
 
 
 def _end(processes: list[BaseProcess]) -> None:
-    """End processes, by force where they do not react."""
+    """End processes, by force if they do not react."""
     for process in processes:
         process.terminate()
     end = time.monotonic() + _REACTION
@@ -140,7 +140,7 @@ def _serve(setup: Callable[[], object] | None, packed: bytes, connection: Connec
     for variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
         os.environ.setdefault(variable, "1")
     tell_warnings()
-    # The connection fails once the parent has closed its end: nobody waits for an answer any more.
+    # The connection fails once the parent has closed its end and no longer waits for an answer.
     with ending(TERMINATE), suppress(EOFError, OSError):
         try:
             if setup is not None:
@@ -189,4 +189,4 @@ def _ignoring_interrupts() -> Iterator[None]:
 
 
 def _ignore(message: object) -> None:
-    """Drop a report that nobody asked for."""
+    """Drop a report that was not requested."""

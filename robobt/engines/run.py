@@ -1,4 +1,4 @@
-"""Runs tasks where the program was told to: in processes of this machine unless it says otherwise."""
+"""Runs tasks on the selected engine, by default in processes of this machine."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ from robobt.engines.work import ReportT, ResultT, TaskT, Work
 
 
 class Engine(Protocol):
-    """Somewhere that tasks can be run.
+    """An engine that runs tasks.
 
     Attributes:
-        workers: how many it does at a time.
+        workers: number of tasks that it runs at a time.
     """
 
     workers: int
@@ -47,7 +47,7 @@ def running_on(engine: Engine) -> Iterator[None]:
 
 
 def engine() -> Engine | None:
-    """Return where tasks are run, None for processes of this machine."""
+    """Return the engine for tasks, None for processes of this machine."""
     return _engine.get()
 
 
@@ -63,13 +63,13 @@ def run_tasks(
 ) -> Generator[ResultT, None, None]:
     """Yield the result of every task, in the order in which they finish.
 
-    A task's result is the same wherever it is done. Close the generator to end earlier.
+    A task's result does not depend on where it runs. Close the generator to end earlier.
 
     Args:
-        work: what is done with each task.
-        tasks: asked for the next one whenever a worker has room, so that it may end once enough is done.
-        workers: how many tasks are done at a time, each in a process of its own; 0 is this process
-            itself, and so is 1 unless ``lost`` is given.
+        work: the work on each task.
+        tasks: iterated when a worker has capacity, so that it may end once enough is done.
+        workers: number of tasks at a time, each in its own process; 0 uses this process, and so does 1 unless
+            ``lost`` is given.
         ahead: tasks a worker process holds at a time; more than one keeps it busy when tasks are short.
         setup: called in each worker before ``work`` is unpickled, to import what that needs.
         on_report: called in this process with what tasks report.

@@ -1,4 +1,4 @@
-"""What is done with many tasks, wherever it is done."""
+"""The work on many tasks, on any engine."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ MAX_WORKERS = 256
 
 @dataclass(slots=True, frozen=True)
 class Work(Generic[TaskT, ReportT, ResultT]):
-    """What is done with each task, and how a failure is put into words.
+    """The work on each task, and the wording of its failures.
 
     Attributes:
         do: called with a task and a function that reports on its progress. For several workers it
             must be a function of a module or another object that can be pickled.
-        noun: what error messages call a task; its number or name follows.
+        noun: name of a task in error messages, followed by its number or name.
         error: raised, with a message of one line, when a task raises, its worker dies or the work
             cannot be sent to a worker.
         passed: exceptions of a task that are raised as they are.

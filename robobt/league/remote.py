@@ -187,7 +187,7 @@ class RemoteControl(_Connection):
         super().__init__(registration, ControllerToRemoteControl, (host, port), key)
 
     def state(self) -> RemoteControlTeamState:
-        """Return what the controller says of the team: what it may ask for, what is left of it, cards."""
+        """Return the controller's data on the team: allowed requests, remaining budgets, cards."""
         return self._asked(RemoteControlToController(request="PING"))
 
     def keeper(self, number: int) -> RemoteControlTeamState:

@@ -51,7 +51,7 @@ class MatchWatch:
             return
         if not self._silent:
             self._silent = True
-            feed.known.tell_again(f"{feed.no_frames(_SILENT)}; robots are told to stand until it returns")
+            feed.known.tell_again(f"{feed.no_frames(_SILENT)}; robots are stopped until it returns")
         if self._begun and self._fatal and silence > TIMEOUT:
             raise LeagueError(f"{feed.no_frames(TIMEOUT)} again; it stopped during the match")
 

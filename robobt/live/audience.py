@@ -1,4 +1,4 @@
-"""Those who watch, one of whom steers: what each asks for is done, refused or put before the match."""
+"""The viewers, one of whom steers: each request is carried out, refused or passed to the match."""
 
 from __future__ import annotations
 
@@ -20,22 +20,22 @@ from robobt.live.viewer import Viewer
 MOST_VIEWERS = 50
 
 _MOST_WAITING = 1000
-"""Messages that wait for the match; more are refused."""
+"""Largest number of messages waiting for the match; further ones are refused."""
 
 
 class Audience:
-    """The viewers of a server; all but reading its attributes is for the server's thread.
+    """The viewers of a server. Other threads may only read its attributes.
 
     Args:
-        changed: is called when there may be something else to send.
+        changed: called when there may be something new to send.
 
     Attributes:
         viewers: by their numbers.
-        steerer: the one who steers.
-        inbox: what that one asks for, for the match, and when it came (perf_counter) [s].
+        steerer: the viewer who steers.
+        inbox: that viewer's requests to the match, with their times of arrival (perf_counter) [s].
         refused: how many requests and messages were refused, by reason.
-        layers: what viewers want skills to draw.
-        stream, state: what they are shown, and how that goes.
+        layers: drawing layers that viewers watch. stream, state: the stream shown to them, and the state of
+            the match.
     """
 
     def __init__(self, changed: Callable[[], None]) -> None:
@@ -50,7 +50,7 @@ class Audience:
         self.state: dict[str, Any] = {}
 
     def wake(self) -> None:
-        """Let every viewer be sent what is new."""
+        """Wake all viewers to send what is new."""
         for viewer in self.viewers.values():
             viewer.news.set()
 
@@ -83,14 +83,14 @@ class Audience:
             self._changed()
 
     def _steer(self, viewer: Viewer | None) -> None:
-        """Let another steer; what is driven stops."""
+        """Let another viewer steer; a driven robot stops."""
         if self.steerer is not viewer:
             self.inbox.put((Rest(do="rest"), perf_counter()))
         self.steerer = viewer
         self._changed()
 
     def _look(self) -> None:
-        """Tell the match what is looked at."""
+        """Send the watched layers to the match."""
         self.layers = frozenset[str]().union(*[viewer.layers for viewer in self.viewers.values()])
 
     def _state_for(self, viewer: Viewer) -> dict[str, Any]:
@@ -113,7 +113,7 @@ class Audience:
             viewer.news.set()
 
     def _obey(self, viewer: Viewer, data: str | bytes) -> str | None:
-        """Do what a message asks for; return why not, None where it was done."""
+        """Carry out a message; return why it was refused, or None."""
         if not viewer.allowance.take(monotonic()):
             return "too many"
         message = read(data)

@@ -1,4 +1,4 @@
-"""What viewers decide about time: pause, single ticks, speed."""
+"""Viewers' control of time: pause, single ticks, speed."""
 
 from __future__ import annotations
 
@@ -7,10 +7,10 @@ from robobt.live.server import Server
 
 
 class Controls:
-    """Keeps what the viewers of a server want, and tells it to them.
+    """Keeps the time settings of a server's viewers, and sends them to all.
 
     Attributes:
-        speed: times real time.
+        speed: factor on real time.
         paused: whether only single ticks are played.
     """
 
@@ -29,7 +29,7 @@ class Controls:
             self._steps -= 1
 
     def take(self, act: Act) -> None:
-        """Do what is asked for, as far as it is about time."""
+        """Carry out a request about time."""
         match act:
             case Pause(on=on):
                 self.paused, self._steps = on, 0
@@ -40,5 +40,5 @@ class Controls:
         self.tell()
 
     def tell(self, **more: object) -> None:
-        """Tell the viewers how it goes."""
+        """Send the state to the viewers."""
         self._server.tell(paused=self.paused, speed=self.speed, **more)

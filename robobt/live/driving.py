@@ -1,4 +1,4 @@
-"""A person drives a robot: from a page's commands to the robot's, and to a stop where they no longer come."""
+"""Manual driving: converts a page's commands to the robot's, and stops it when they no longer arrive."""
 
 from __future__ import annotations
 
@@ -15,38 +15,38 @@ STOPS_IN = 0.2
 """A robot whose page falls silent is stopped in this time [s]."""
 
 _SLACK = 0.02
-"""What a tick may be late [s]."""
+"""Tolerated delay of a tick [s]."""
 
 HELD_UP = 0.1
-"""A command that took so much longer on its way than others did is as old [s]."""
+"""A command with this much more delay than the fastest counts as that old [s]."""
 
 _WINDOW = 30.0
-"""How long the shortest way is remembered, for clocks drift apart [s]."""
+"""Time for which the shortest delay is kept, because clocks drift apart [s]."""
 
 _MEANT = radians(35.0)
-"""A mate further off the heading is not who a pass is meant for."""
+"""A pass is not meant for a team-mate farther off the heading than this."""
 
 _SURE = radians(2.5)
-"""How far off a pass may be."""
+"""Angle error allowed for a pass."""
 
 _TURN, _GAIN = 3.0, 10.0
-"""How fast an assisted robot turns with the ball [rad/s], and that by the angle that is left [1/s]."""
+"""Turning rate with the ball of an assisted robot [rad/s], and rate per remaining angle [1/s]."""
 
 _ARRIVAL = 2.5
-"""How fast an assisted pass arrives [m/s]."""
+"""Arrival speed of an assisted pass [m/s]."""
 
 Frames = Literal["field", "robot"]
 
 
 class HandDriver:
-    """Drives one robot as its page says: called at every tick, it returns the command.
+    """Drives one robot by its page's commands: called in every tick, it returns the robot's command.
 
     Args:
-        clock: the time by which commands are as old as they are [s].
-        period: from one tick to the next [s].
+        clock: clock for the age of commands [s].
+        period: time between two ticks [s].
 
     Attributes:
-        deadline: a command that is older than this counts no more [s].
+        deadline: age from which a command no longer counts [s].
     """
 
     def __init__(self, clock: Callable[[], float], period: float) -> None:
@@ -68,7 +68,7 @@ class HandDriver:
         kick: float,
         assist: bool = False,
     ) -> bool:
-        """Take a command; False for one that was held up on its way.
+        """Take a command; return False for a delayed one.
 
         Args:
             sent: when the page sent it, by the page's own clock [s].
@@ -77,9 +77,9 @@ class HandDriver:
                 defends -x) or the robot's own.
             omega: as a share of its top turning rate.
             frame: which of them.
-            dribbler: whether the dribbler turns.
+            dribbler: whether the dribbler is on.
             kick: speed of a kick [m/s], 0 for none.
-            assist: whether a kick is turned into a pass to the mate whom the robot about looks at.
+            assist: whether a kick becomes a pass to the team-mate that the robot roughly faces.
         """
         if self._way.excess(arrived, arrived - sent) > HELD_UP:
             return False
@@ -89,7 +89,7 @@ class HandDriver:
 
     @property
     def told(self) -> bool:
-        """Whether a command holds now."""
+        """Whether a command is in force."""
         return self._wanted is not None and self._clock() <= self._at + self.deadline
 
     def stop(self) -> None:
@@ -115,7 +115,7 @@ class HandDriver:
 
 
 def _passed(view: Frame, me: RobotState, most: float) -> RobotCommand | None:
-    """Return the command that turns to the mate who is meant and passes to it; None where nobody is."""
+    """Return the command that turns to the intended team-mate and passes to it, or None without one."""
     mates = [mate for mate in view.own if mate.id != me.id]
     offs = [(wrap_angle(direction(me.position, mate.position) - me.heading), mate) for mate in mates]
     off, meant = min(offs, key=lambda each: abs(each[0]), default=(pi, me))
@@ -129,14 +129,14 @@ def _passed(view: Frame, me: RobotState, most: float) -> RobotCommand | None:
 
 
 class _ShortestWay:
-    """The shortest time that anything took on its way lately, the clocks' difference included."""
+    """The shortest recent delay, including the clocks' difference."""
 
     def __init__(self) -> None:
         self._since = float("-inf")
         self._before = self._now = float("inf")
 
     def excess(self, at: float, took: float) -> float:
-        """Return by how much this took longer [s]."""
+        """Return the delay beyond the shortest one [s]."""
         if at > self._since + _WINDOW:
             self._since, self._before, self._now = at, self._now, float("inf")
         self._now = min(self._now, took)

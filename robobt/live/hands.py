@@ -1,4 +1,4 @@
-"""What viewers do to a match: they move things, change plays and skills, give the referee's orders."""
+"""Viewers' changes to a match: moving objects, changing plays and skills, giving referee orders."""
 
 from __future__ import annotations
 
@@ -36,14 +36,14 @@ from robobt.world.state import RobotId
 
 
 class Hands:
-    """Does to one match what messages ask for, and tells the viewers where that cannot be done."""
+    """Carries out messages on one match, and reports to the viewers what is not possible."""
 
     def __init__(self, match: MatchLoop, server: Server, clock: Callable[[], float]) -> None:
         self._match, self._server, self._clock = match, server, clock
         self._steering = Steering(match)
         self._grip = Grip()
         self._situations = 0
-        # No page may have a file of this machine loaded, as a play or as a model, but those.
+        # A page may have no other files of this machine loaded, as a play or as a model.
         self._files = paths_in(match.scenario.model_dump(mode="json"))
         self._plays = [*dict.fromkeys([*PLAYS, *[setup.play for _, setup in match.scenario.robots]])]
         server.tell(
@@ -61,7 +61,7 @@ class Hands:
         self._driven: RobotId | None = None
 
     def do(self, act: Act, now: float, arrived: float) -> None:
-        """Do it, or say why not; ``arrived`` is when it came."""
+        """Carry out a message, or report why not; ``arrived`` is its time of arrival."""
         try:
             if isinstance(act, Drive | Rest | Take | Release):
                 self._drive(act, arrived)
@@ -71,7 +71,7 @@ class Hands:
             self._server.say(str(error))
 
     def hold(self, now: float) -> None:
-        """Keep what is held where it is held, before the next tick."""
+        """Keep held objects in place, before the next tick."""
         for move in self._grip.moves(now):
             try:
                 self._move(move)
@@ -114,7 +114,7 @@ class Hands:
                 self._server.tell(situation=self._situations)
 
     def take(self, robot: RobotId) -> None:
-        """Let whoever steers drive a robot."""
+        """Let the steering viewer drive a robot."""
         self.release()
         self._driver = HandDriver(self._clock, self._match.scenario.period)
         self._steering.drive(robot, self._driver)
@@ -122,7 +122,7 @@ class Hands:
         self._server.tell(driven=str(robot))
 
     def release(self) -> None:
-        """Let the tree of the robot that is driven drive it again."""
+        """Give the driven robot back to its tree."""
         if self._driven is not None:
             self._steering.drive(self._driven, None)
         self._driven = self._driver = None
@@ -154,7 +154,7 @@ class Hands:
             self._steering.move_robot(robot_of(move.robot), move.x, move.y, move.heading, move.held)
 
     def _check_files(self, robot: RobotId, path: str, params: Mapping[str, object]) -> None:
-        """Refuse parameters that name a file which neither the scenario names nor what they are now."""
+        """Refuse parameters that name a file unless the scenario or the present parameters name it too."""
         for file in paths_in(dict(params)) - self._files:
             if file not in paths_in([value for _, value in self._steering.parameters(robot, path)]):
                 raise SteeringError(

@@ -1,4 +1,4 @@
-"""What a page may ask for: messages in JSON, small, few and of known forms."""
+"""The messages of a page: JSON, small, few and of known forms."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ MOST_BYTES = 4096
 """The longest message [bytes]."""
 
 RATE, BURST = 200.0, 400.0
-"""Messages a second that a page may send for long, and at once."""
+"""Number of messages per second that a page may send, and at once."""
 
 MOST_REFUSED = 50
-"""Messages that are none after which a page is no longer listened to."""
+"""Number of invalid messages after which a page is ignored."""
 
 SLOWEST, FASTEST = 0.05, 20.0
 
@@ -33,28 +33,28 @@ class Pause(Settings):
 
 
 class Step(Settings):
-    """Play so many ticks and pause."""
+    """Play this many ticks and pause."""
 
     do: Literal["step"]
     ticks: int = Field(1, ge=1, le=1000)
 
 
 class Speed(Settings):
-    """Play at so many times real time."""
+    """Play at this factor of real time."""
 
     do: Literal["speed"]
     factor: float = Field(ge=SLOWEST, le=FASTEST)
 
 
 class Reset(Settings):
-    """Start the scenario anew, with the next seed or the same."""
+    """Restart the scenario, with the next or the same seed."""
 
     do: Literal["reset"]
     next: bool = True
 
 
 class Seek(Settings):
-    """Go on from a time of a recording [s]."""
+    """Continue from a time of a recording [s]."""
 
     do: Literal["seek"]
     time: float = Field(ge=-1e9, le=1e9)
@@ -67,13 +67,13 @@ class Steer(Settings):
 
 
 class Past(Settings):
-    """Send what is kept of the match."""
+    """Send the stored part of the match."""
 
     do: Literal["past"]
 
 
 class Layers(Settings):
-    """Let skills draw these layers as long as this viewer looks."""
+    """Let skills draw these layers while this viewer watches."""
 
     do: Literal["layers"]
     shown: list[Annotated[str, Field(max_length=40)]] = Field(max_length=MOST_LAYERS)
@@ -92,7 +92,7 @@ def robot_of(name: str) -> RobotId:
 
 
 class MoveBall(Settings):
-    """Put the ball somewhere, with a velocity; ``held`` until it is let go."""
+    """Place the ball with a velocity; ``held`` while it is dragged."""
 
     do: Literal["ball"]
     x: _Metres
@@ -103,7 +103,7 @@ class MoveBall(Settings):
 
 
 class MoveRobot(Settings):
-    """Put a robot somewhere, in world coordinates; ``held`` until it is let go."""
+    """Place a robot, in world coordinates; ``held`` while it is dragged."""
 
     do: Literal["robot"]
     robot: _Robot
@@ -129,7 +129,7 @@ class GiveOrder(Settings):
 
 
 class AskForm(Settings):
-    """Tell the parameters of a robot's play, or of a node of its tree."""
+    """Request the parameters of a robot's play, or of a node of its tree."""
 
     do: Literal["form"]
     robot: _Robot
@@ -175,7 +175,7 @@ class Release(Settings):
 
 
 class Rest(Settings):
-    """Stop the robot that is driven, as where the page has lost the focus."""
+    """Stop the driven robot, for example because the page has lost the focus."""
 
     do: Literal["rest"]
 
@@ -184,7 +184,7 @@ _Share = Annotated[float, Field(ge=-1, le=1)]
 
 
 class Drive(Settings):
-    """What the robot that is driven is to do; ``at`` is when the page sent it, by its own clock [s].
+    """The command of the driven robot; ``at`` is when the page sent it, by the page's clock [s].
 
     Velocity and turning rate are shares of what the robot can.
     """
@@ -219,7 +219,7 @@ Act = (
     | Rest
     | Drive
 )
-"""What only the viewer that steers may ask for: it acts on the match."""
+"""Messages that act on the match, which only the steering viewer may send."""
 
 Message = Act | Steer | Past | Layers
 
@@ -227,7 +227,7 @@ _READER: TypeAdapter[Message] = TypeAdapter(Annotated[Message, Field(discriminat
 
 
 def read(data: str | bytes) -> Message | None:
-    """Return the message, None where it is none."""
+    """Return the message, or None if it is invalid."""
     if len(data) > MOST_BYTES:
         return None
     try:
@@ -237,7 +237,7 @@ def read(data: str | bytes) -> Message | None:
 
 
 class Allowance:
-    """How many messages may still come: a bucket that fills again with time."""
+    """A rate limit: a bucket of messages that refills over time."""
 
     def __init__(self, now: float) -> None:
         self._left, self._at = BURST, now

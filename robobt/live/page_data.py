@@ -1,4 +1,4 @@
-"""What the viewer's page is given: what stays the same, and chunks of ticks.
+"""The data of the viewer's page: a constant part, and chunks of ticks.
 
 A replay page has one chunk, all of the recording; a live page is sent one after the other. All
 places are in world coordinates; times a robot's ``view``, 1 or -1, they are in that of its own
@@ -36,7 +36,7 @@ _GOAL_LINE = "goal_line"
 
 
 def header_data(header: RecordingHeader, paths: bool = False) -> dict[str, object]:
-    """Return what stays the same, as JSON can hold it; with ``paths`` nodes have their ids, for who edits."""
+    """Return the constant part for JSON; with ``paths`` nodes have their ids, for editing."""
     return {
         "scenario": header.scenario,
         "trial": header.trial,
@@ -68,7 +68,7 @@ def header_data(header: RecordingHeader, paths: bool = False) -> dict[str, objec
 
 
 class ChunkEncoder:
-    """Makes the chunks of one match, in their order."""
+    """Makes the chunks of one match, in order."""
 
     def __init__(self, header: RecordingHeader) -> None:
         self._header = header
@@ -203,7 +203,7 @@ def _steps(changes: Iterable[tuple[int, object]], frames: int, stride: int) -> l
 
 
 def _written_steps(changes: Written, frames: int, stride: int) -> list[object]:
-    """Return what skills wrote anew but what is told otherwise; changes of one frame are merged."""
+    """Return new values that skills wrote and that are not sent otherwise, merged per frame."""
     by_frame: dict[int, dict[str, JsonValue]] = {}
     for tick, change in changes:
         told = {entry: value for entry, value in change.items() if entry not in (_GOAL_LINE, CANDIDATES)}
@@ -241,7 +241,7 @@ def _goal_lines(changes: Written, texts: _Table) -> Iterator[tuple[int, tuple[Js
                 raise ValueError("reaches to nowhere")
             found = plain(reach), texts[_base64(base64.b64decode(line.chances))]
         except (TypeError, ValueError):
-            # Some other skill's idea of it, which the page shows nothing of.
+            # Another skill wrote this entry in its own form, which the page does not show.
             yield tick, None
         else:
             yield tick, found

@@ -1,4 +1,4 @@
-"""All that holds at the newest tick, as it follows from what has changed so far."""
+"""The complete state at the newest tick, derived from all changes so far."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ class Present:
                 self._lasting[name] = changes[name]
 
     def changes(self) -> dict[str, Any]:
-        """Return all that holds, as the changes of a first tick would tell it."""
+        """Return the complete state, in the form of the changes of a first tick."""
         told: dict[str, Any] = {
             "statuses": dict(self._statuses),
             "feedback": {robot: dict(said) for robot, said in self._feedback.items()},

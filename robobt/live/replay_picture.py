@@ -21,7 +21,7 @@ _PERIOD = 0.08
 """Time from one picture of an animation to the next; the format counts hundredths [s]."""
 
 _TRAIL = 1.0
-"""How much of the ball's way is shown [s]."""
+"""Duration of the ball's path that is shown [s]."""
 
 _BAR, _ROW, _PANEL, _INDENT = 28, 19, 300, 14
 _PAPER, _INK, _FAINT = (246, 248, 250), (23, 33, 43), (150, 160, 170)
@@ -32,7 +32,7 @@ class Stage:
     """Paints a recording: the field, time and score below it, and the tree of one robot beside it.
 
     Args:
-        recording: what is shown.
+        recording: the recording that is shown.
         robot: whose tree is shown; None for none.
         width: of the field's picture [px].
     """

@@ -18,17 +18,17 @@ from robobt.match.recording.stream import TickChanges, open_stream, read_bytes
 from robobt.signals import check
 
 _LOOK = 0.05
-"""How often a recording that is paused or over looks for what viewers ask for [s]."""
+"""Interval for checking viewers' requests while a recording is paused or over [s]."""
 
 
 class Replay:
-    """Shows a recording at the pace that viewers ask for, from a time on.
+    """Shows a recording at the viewers' pace, from a start time.
 
     Args:
         server: where it is watched.
         path: the recording.
         start: from where on [s]; what was before is not shown.
-        speed: times real time.
+        speed: factor on real time.
         clock: the time in seconds.
 
     Raises:
@@ -58,7 +58,7 @@ class Replay:
         self._ended = True
 
     def show(self) -> None:
-        """Show it, again whenever a viewer asks for that, until :meth:`end`."""
+        """Show it, and again at a viewer's request, until :meth:`end`."""
         while not self._ended:
             self._again = False
             self._once()

@@ -33,19 +33,19 @@ except ModuleNotFoundError as error:
     raise MissingExtraError("websockets", "live") from error
 
 _BEAT = 1.0 / 60.0
-"""How often new ticks are looked for at least while somebody watches [s]."""
+"""Longest interval for checking new ticks while there are viewers [s]."""
 
 _IDLE_BEAT = 0.5
-"""The same while nobody does [s]."""
+"""Interval for checking new ticks without viewers [s]."""
 
 _AFTER = 0.002
-"""How long after a tick is likely to come it is looked for: by then the match sleeps [s]."""
+"""Delay after a tick's expected time before checking for it, when the match sleeps [s]."""
 
 _KEPT_BY_SYSTEM = 2**17
-"""What the system keeps for a viewer at most [bytes]."""
+"""Largest send buffer of the system per viewer [bytes]."""
 
 _SWITCH = 0.0005
-"""How long this thread may keep the match's from going on [s]."""
+"""Longest time for which this thread may delay the match's thread [s]."""
 
 
 class LiveError(RobobtError, OSError):
@@ -53,7 +53,7 @@ class LiveError(RobobtError, OSError):
 
 
 class Server:
-    """Serves the page of whatever stream it is given. A context manager.
+    """Serves the page of a stream. A context manager.
 
     Args:
         host: address to listen at; only this machine's own by default.
@@ -62,8 +62,8 @@ class Server:
 
     Attributes:
         url: where the page is, once it is served.
-        audience: who watches.
-        inbox: what the viewer that steers asks for, for the match, and when that came (perf_counter) [s].
+        audience: the viewers.
+        inbox: the steering viewer's requests to the match, with their times of arrival (perf_counter) [s].
         refused: how many requests and messages were refused, by reason.
         situation: the scenario that was last made of the present situation, as YAML.
 
@@ -109,7 +109,7 @@ class Server:
         self.audience.stream = stream
 
     def tell(self, **state: Any) -> None:
-        """Tell the viewers how the match goes: what changes of its state, as JSON can hold it."""
+        """Send changes of the match's state to the viewers, as JSON data."""
         known = self.audience.state
         if any(known.get(name, self) != value for name, value in state.items()):
             self.audience.state = {**known, **state}
@@ -126,19 +126,19 @@ class Server:
 
     @property
     def layers(self) -> frozenset[str]:
-        """What viewers want skills to draw."""
+        """Drawing layers that viewers watch."""
         return self.audience.layers
 
     @property
     def viewers(self) -> int:
-        """How many watch."""
+        """Number of viewers."""
         return len(self.audience.viewers)
 
     def _run(self) -> None:
         try:
             asyncio.run(self._main())
         finally:
-            # Whoever waits for it is told, whatever has happened.
+            # Waiting threads are notified in every case.
             self._ready.set()
 
     async def _main(self) -> None:
@@ -191,7 +191,7 @@ class Server:
         self._wake.set()
 
     async def _beat(self) -> None:
-        """Encode what is new and wake the viewers."""
+        """Encode new ticks and wake the viewers."""
         assert self._loop is not None
         assert self._wake is not None
         audience = self.audience

@@ -1,4 +1,4 @@
-"""Plays a match at the pace that viewers ask for, and does to it what they ask for."""
+"""Plays a match at the viewers' pace, and carries out their requests."""
 
 from __future__ import annotations
 
@@ -20,16 +20,16 @@ from robobt.match.results.results import MatchResult
 from robobt.signals import check
 
 LOOK = 1.5
-"""How long the end of a match is shown before the next [s]."""
+"""Time for which the end of a match is shown before the next [s]."""
 
 LATE = 0.005
-"""A tick that begins later than this after it was due counts as late [s]."""
+"""Delay from which a tick counts as late [s]."""
 
 _GIVE_UP = 0.25
-"""By how much a match may fall behind before it no longer tries to catch up [s]."""
+"""Delay from which a match no longer tries to catch up [s]."""
 
 _LOOK = 0.05
-"""How often a match that is paused or over looks for what viewers ask for [s]."""
+"""Interval for checking viewers' requests while a match is paused or over [s]."""
 
 
 class Live:
@@ -37,14 +37,14 @@ class Live:
 
     Args:
         server: where they watch.
-        speed: times real time, as fast as can be where it is infinite.
-        paused: whether it waits for a viewer to let it go.
+        speed: factor on real time; infinite for as fast as possible.
+        paused: whether it waits for a viewer to continue it.
         clock: the time in seconds, that of the server's inbox.
-        sleep: waits for so many seconds.
+        sleep: function that waits for a number of seconds.
 
     Attributes:
-        ticks: ticks that were played at their time.
-        late: how many of them began late, by more than :data:`LATE`.
+        ticks: number of ticks played in real time.
+        late: number of them that were late by more than :data:`LATE`.
     """
 
     def __init__(
@@ -64,7 +64,7 @@ class Live:
         self._capture: Capture | None = None
         self._stream: Stream | None = None
         self._hands: Hands | None = None
-        # What viewers look at, and the names of all layers and how many of those they are told.
+        # The layers that viewers watch, the names of all layers, and how many of them were sent.
         self._layers: frozenset[str] | None = None
         self._named: set[str] = set()
         self._known = 0
@@ -73,9 +73,9 @@ class Live:
         self.ticks = self.late = 0
 
     def play_on(self, make: Callable[[int], MatchLoop]) -> None:
-        """Play one match after the other as viewers ask for them, until :meth:`end`.
+        """Play one match after the other at viewers' request, until :meth:`end`.
 
-        ``make`` is given the trial, which tells the seed.
+        ``make`` is called with the trial's number, which decides the seed.
         """
         trial = 0
         while not self._ended:
@@ -88,7 +88,7 @@ class Live:
                 trial += self._reset.next
 
     def end(self) -> None:
-        """End what is played and shown; may be called by any thread."""
+        """End playing and showing; may be called by any thread."""
         self._ended = True
 
     def play(self, match: MatchLoop) -> bool:
@@ -201,7 +201,7 @@ class Live:
             self._idle(match)
 
     def _attend(self, match: MatchLoop) -> bool:
-        """Do what viewers want before the next tick; False where they want none of this match."""
+        """Carry out viewers' requests before the next tick; return False if they want to leave this match."""
         assert self._hands is not None
         while not self._server.inbox.empty():
             self._do(*self._server.inbox.get_nowait(), match)
@@ -217,7 +217,7 @@ class Live:
         return True
 
     def _idle(self, match: MatchLoop) -> None:
-        """Wait a moment for what viewers ask for."""
+        """Wait a moment for viewers' requests."""
         check()
         with suppress(Empty):
             self._do(*self._server.inbox.get(timeout=_LOOK), match)
@@ -232,7 +232,7 @@ class Live:
             self._server.show(self._stream)
 
     def _draw(self) -> None:
-        """Let skills draw what viewers look at."""
+        """Let skills draw the layers that viewers watch."""
         assert self._capture is not None
         if self._layers is not self._server.layers:
             self._layers = self._server.layers

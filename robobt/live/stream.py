@@ -1,4 +1,4 @@
-"""A match as messages for viewers, with its last minutes kept.
+"""A match as messages for viewers, with its last minutes stored.
 
 Ticks come from the match's thread, which only puts them into a queue; all else is done by the
 thread that calls :meth:`Stream.advance`. Each message is one chunk of ticks
@@ -39,16 +39,16 @@ KEPT = 300.0
 """How far back a viewer can go [s]."""
 
 _SEGMENT = 5.0
-"""From one whole chunk to the next [s]."""
+"""Time between two whole chunks [s]."""
 
 _MOST_BYTES = 96 * 2**20
-"""The most that is kept of a match, however short its ticks [bytes]."""
+"""Largest stored size of a match [bytes]."""
 
 _MOST_WAITING = 20_000
-"""Ticks that wait to be encoded; so many only where the server's thread is dead."""
+"""Largest number of ticks waiting to be encoded, reached only if the server's thread is dead."""
 
 _AT_ONCE = 60
-"""Ticks in a message at most."""
+"""Largest number of ticks in a message."""
 
 
 @dataclass(slots=True)
@@ -80,7 +80,7 @@ class Stream:
         source: a match that is captured, or the header of ticks that are added.
 
     Attributes:
-        header: what stays the same, as the page is told it.
+        header: the constant part, as sent to the page.
         first: number of the oldest message that is kept.
         end: number of the next message.
     """
@@ -104,7 +104,7 @@ class Stream:
 
     @property
     def until_next(self) -> float:
-        """In how long the next tick is likely to come [s]."""
+        """Expected time until the next tick [s]."""
         return self._came + self._gap - time.time()
 
     def take(self, tick: CapturedTick) -> None:
@@ -112,11 +112,11 @@ class Stream:
         self._waiting.append((time.time(), tick))
 
     def add(self, ticks: EncodedTicks) -> None:
-        """Add ticks that are encoded already; called by whoever has them."""
+        """Add ticks that are already encoded."""
         self._encoded.append((time.time(), ticks))
 
     def remember(self, ticks: EncodedTicks) -> None:
-        """Take what holds after ticks that nobody is to see, before any is added."""
+        """Take the state after ticks that are not shown, before any tick is added."""
         for changes in ticks.changes:
             self._present.follow(changes)
 
@@ -176,7 +176,7 @@ class Stream:
         return _message(tick, self._header, ChunkEncoder(self._header), True, time.time())
 
     def recording(self) -> bytes:
-        """Return what is kept as a recording."""
+        """Return the stored part as a recording."""
         sink = pa.BufferOutputStream()
         with new_stream(sink, self._header) as writer:
             for segment in self._segments:

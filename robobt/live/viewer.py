@@ -1,4 +1,4 @@
-"""One viewer: sends it what is new, or the present where it cannot keep up."""
+"""One viewer: sends new messages, or the present state if the viewer cannot keep up."""
 
 from __future__ import annotations
 
@@ -12,26 +12,26 @@ from robobt.live.messages import Allowance
 from robobt.live.stream import Stream
 
 _BEHIND = 30
-"""Messages by which a viewer may be behind before it is sent the present instead."""
+"""Number of messages by which a viewer may be behind before it gets the present state instead."""
 
 _AT_ONCE = 2**16
-"""What it is sent at once [bytes]."""
+"""Bytes sent at once."""
 
 _PAST_AT_ONCE = 2**14
-"""The same of the past, which must not hold up the present [bytes]."""
+"""Bytes of the past sent at once, which must not delay the present."""
 
 
 class Viewer:
     """A viewer and how much of the match it has seen.
 
-    What it is sent waits for it to read: nothing is piled up for one that does not.
+    Sending waits until the viewer reads, so that nothing accumulates for a viewer that does not.
 
     Attributes:
-        number: in the order in which viewers came.
-        news: set whenever there may be something new to send.
-        layers: what it wants skills to draw.
-        refused: messages of it that were refused.
-        skipped: how often it could not keep up and was sent the present instead.
+        number: number of the viewer, in order of arrival.
+        news: event set when there may be something new to send.
+        layers: drawing layers that it watches.
+        refused: number of refused messages.
+        skipped: number of times it could not keep up and got the present state instead.
     """
 
     def __init__(self, number: int, socket: ServerConnection, now: float) -> None:
@@ -48,13 +48,13 @@ class Viewer:
         self._joined = 0
 
     def ask_past(self) -> None:
-        """Send what was kept before this viewer came."""
+        """Send the messages stored before this viewer came."""
         if self._stream is not None:
             self._past, self._past_end = self._stream.first, self._joined
         self.news.set()
 
     async def send(self, stream: Stream, state: dict[str, Any]) -> None:
-        """Send what there is to send now, and wait until it is on its way."""
+        """Send all new messages, and wait until they are on their way."""
         if stream is not self._stream:
             await self._begin(stream)
         if state != self._told:

@@ -188,7 +188,7 @@ class MatchLoop(Closing):
         self.outcome = self._judge.judge(truth, self.game, self.measures.kicks, self.measures.kicked)
         frame = truth
         if self.outcome is None:
-            # Take a new frame: the true frame is from before the referee may have placed the ball.
+            # Take a new frame, because the referee may have placed the ball since the true frame was taken.
             frame = self.world.observe()
             frame.game = self.game
             self._commands = self.decide(frame)

@@ -1,4 +1,4 @@
-"""What a learned policy's action in [-1, 1] tells the robot.
+"""The meaning of a learned policy's action in [-1, 1] for the robot.
 
 The environments that a policy is trained in and the skill that runs it scale,
 limit and read actions with the functions here. A model card carries the
@@ -30,7 +30,7 @@ ACTION_ENTRIES: dict[str, tuple[str, ...]] = {
 
 
 class ActionScaling(Settings):
-    """How an action in [-1, 1] becomes a command, SI units.
+    """Conversion of an action in [-1, 1] to a command, in SI units.
 
     ``drive`` actions are (vx, vy, omega) in the robot's frame: the velocity is
     scaled by ``max_speed`` and shortened to it, so that driving diagonally is
@@ -83,7 +83,7 @@ SHOOT_ACTION = ActionScaling(kind="turn_and_kick", max_turn=10.0, kick_speed=5.0
 SCORE_ACTION = ActionScaling(
     kind="drive_and_kick", max_speed=3.0, max_turn=6.0, kick_speed=6.0, dribbler=True
 )
-"""Driving with the ball and kicking it; 0.5 m/s below the rules' fastest ball, for what driving adds."""
+"""Driving with the ball and kicking it, 0.5 m/s below the rules' limit because driving adds speed."""
 
 
 _SCALING = numbers_dtype(ActionScaling)
@@ -101,10 +101,10 @@ def fill_commands(
     """Fill the commands of many robots from their actions; return False where one is not finite.
 
     Args:
-        actions: (n, A) in [-1, 1], :attr:`ActionScaling.entries`; what lies outside is clipped.
+        actions: (n, A) in [-1, 1], :attr:`ActionScaling.entries`; values outside are clipped.
         numbers: of the :class:`ActionScaling`.
-        drives: of the same.
-        kicks: of the same.
+        drives: whether actions begin with a velocity.
+        kicks: whether the last entry is a kick.
         kick_factors: (n,) by which the speed of each robot's kicks is multiplied.
         commands: (n, 6) to be filled: vx, vy [m/s], omega [rad/s], kick speed [m/s], whether to
             kick on contact, whether the dribbler turns.
@@ -132,7 +132,7 @@ def fill_commands(
 def command_of(action: Iterable[float], scaling: ActionScaling) -> RobotCommand:
     """Return the command that one action (A,) stands for; kicks fire at once or not at all.
 
-    What :func:`fill_commands` does for many, to the last bit but one: the two round the norm differently.
+    It equals :func:`fill_commands` except for the last bit, because the two round the norm differently.
     """
     entries = [min(max(float(entry), -1.0), 1.0) for entry in action]
     vx = vy = kick = 0.0

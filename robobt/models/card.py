@@ -14,7 +14,7 @@ from robobt.world.features import ObservationSpec, find_observation
 from robobt.world.limits import RobotLimits
 
 MODEL_NAME = r"^[A-Za-z0-9][A-Za-z0-9_.-]{0,63}$"
-"""What a model may be called, as a regular expression."""
+"""Allowed names of models, as a regular expression."""
 
 MAX_CARD_SIZE = 64 * 1024
 """Longest card that is read [bytes]."""
@@ -23,14 +23,14 @@ Kind = Literal["policy", "shot_predictor"]
 
 
 class ModelCardError(ConfigError):
-    """A model card that cannot be read."""
+    """A model card cannot be read."""
 
 
 class ObservationCard(Settings):
-    """What the model's input means.
+    """The meaning of the model's input.
 
-    Either one that :func:`robobt.world.features.find_observation` knows, with the version it
-    had in training, or any other vector by the names of its entries.
+    Either an observation known to :func:`robobt.world.features.find_observation`, with its version in
+    training, or any other vector, by the names of its entries.
     """
 
     name: str = Field(min_length=1, max_length=64, description="name of the observation")
@@ -53,9 +53,9 @@ class ObservationCard(Settings):
         return self
 
     def problem(self) -> str | None:
-        """Return why this is not the observation of that name as it is defined now; None if it is.
+        """Return how this differs from the present observation of that name, or None.
 
-        A name that is unknown here is somebody else's to check.
+        An unknown name is not checked here.
         """
         spec = find_observation(self.name)
         if spec is None or self == ObservationCard.of(spec):

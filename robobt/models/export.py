@@ -36,10 +36,10 @@ MAX_EXPORT_SIZE = 2**20
 """A skill's network is small; a file longer than this is a mistake [bytes]."""
 
 TOLERANCE = 1e-6
-"""How far a TorchScript file may be off the network it was made from, on any output."""
+"""Largest difference of any output between a TorchScript file and its network."""
 
 _ROUNDING = 1e-5
-"""The same for ONNX, as a share of the largest output."""
+"""Largest difference for ONNX, as a share of the largest output."""
 _SAMPLES = 1000
 _MANGLED = re.compile(rb"\.___torch_mangle_\d+")
 
@@ -61,8 +61,8 @@ def export_model(
     module and card give the same file.
 
     Args:
-        module: the network; a copy is put into evaluation mode, it stays as it is.
-        card: its card, but for ``payload``, which is filled in here.
+        module: the network, which stays unchanged; a copy is put into evaluation mode.
+        card: its card, without ``payload``, which is filled in here.
         folder: folder to write to; made when it is missing.
         formats: "torchscript", "onnx" or both.
         force: whether files that are there already may be replaced.
@@ -73,7 +73,7 @@ def export_model(
     Raises:
         ModelError: a file is there already, the module does not fit its card, its outputs leave
             their range, it is larger than 1 MB, or the file's outputs would differ from its own.
-            Of two formats the one that succeeded is written all the same.
+            If one of two formats fails, the other is still written.
     """
     folder = Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
@@ -103,7 +103,7 @@ def export_model(
 
 
 def refuse_to_replace(path: Path, force: bool) -> None:
-    """Refuse to write a model where one is, unless by ``force``; to be asked before long work as well.
+    """Refuse to replace an existing model without ``force``; call this before long work as well.
 
     Raises:
         ModelError: the file is there.

@@ -3,9 +3,9 @@
 A model file is a TorchScript archive or an ONNX file that carries its
 :class:`~robobt.models.card.ModelCard`. The last 64 bytes of either, an
 archive's comment or a piece of ONNX's metadata, are the SHA-256 of all before them,
-and the card carries that of the network: a file that was cut or altered anywhere
-is refused here, without torch or onnxruntime. An archive that torch itself wrote,
-with a card among its extra files, has no such seal; its members' CRCs have to do.
+and the card carries that of the network: a file that was truncated or altered anywhere is refused here,
+without torch or onnxruntime. An archive written by torch itself, with a card among its extra files, has no
+such seal; there the members' CRCs are checked.
 """
 
 from __future__ import annotations
@@ -51,16 +51,16 @@ _METADATA = 14
 
 
 class ModelError(RobobtError, ValueError):
-    """A model that cannot be used; the message is one line that names the file."""
+    """A model cannot be used; the message is one line that names the file."""
 
 
 class UnknownModelError(ModelError):
-    """A name that no shipped model has."""
+    """No model has this name."""
 
 
 @dataclass(frozen=True)
 class ModelFile:
-    """A model file whose card and checksums are in order.
+    """A model file with a valid card and checksums.
 
     Attributes:
         path: the file.
@@ -68,8 +68,8 @@ class ModelFile:
         sha256: checksum of the whole file.
         size: size of the whole file [bytes].
         card: the model's card.
-        content: the network without the card, as torch or onnxruntime is given it. A TorchScript archive
-            is packed anew from what has been checked, so that nothing else of the file gets there.
+        content: the network without the card, as passed to torch or onnxruntime. A TorchScript archive is
+            packed again from its checked parts, so that nothing else of the file is passed on.
     """
 
     path: Path
@@ -86,8 +86,8 @@ def read_model_file(path: str | Path) -> ModelFile:
     A file that has not changed is read once per process.
 
     Raises:
-        ModelError: it is missing, too large, no model file, cut, altered, without a card, with a
-            card that is none, or not the file that the manifest beside it lists.
+        ModelError: it is missing, too large, no model file, truncated, altered, without a valid card, or not
+        the file that the manifest beside it lists.
     """
     path = Path(path)
     return _checked(path, _state_of(path), _state_of(path.parent / MANIFEST))
@@ -225,7 +225,7 @@ def pack_onnx(content: bytes, card: str) -> bytes:
 
 
 def _state_of(path: Path) -> Hashable:
-    """Return what differs between two states of a file; a new object where that cannot be told."""
+    """Return what differs between two states of a file; a new object if that is unknown."""
     try:
         status = path.stat()
     except FileNotFoundError:

@@ -1,4 +1,4 @@
-"""Models found by their names, and checked to fit their use as far as can be told without running them."""
+"""Finding models by name, and checking that they fit their use without running them."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ def read_fitting_model(
 
     Args:
         name_or_path: name of a shipped model, or a file.
-        kind: what it has to be; None for any.
+        kind: required kind; None for any.
         skill: skill that will use it; None for any.
         observation: observation that it will be given; None for any.
 

@@ -108,16 +108,15 @@ def load_policy(
 ) -> Policy:
     """Load a model: a shipped one by its name, any other by its path, or a file that has been read.
 
-    Before it is run: size, archive, checksums, card, and that it consists of nothing
-    but arithmetic (:mod:`~robobt.models.checks`). Then it is tried on zeros and on
-    random inputs: it has to answer finite numbers of its card's shape and range, the
-    same each time, and for a batch what it answers one by one. The same file is
-    loaded once per process. Each call runs on one thread; torch's settings stay as they are.
+    Before it runs, size, archive, checksums and card are checked, and that it consists of arithmetic only
+    (:mod:`~robobt.models.checks`). Then it is run on zeros and random inputs: its outputs must be finite, of
+    its card's shape and range, repeatable, and the same for a batch as one by one. A file is loaded once per
+    process. Each call runs on one thread; torch's settings stay unchanged.
 
     Args:
         model: name of a shipped model, the path of a file, or what :func:`read_fitting_model` returned, with
             which the use has been checked.
-        kind: what it has to be; None for any.
+        kind: required kind; None for any.
         skill: skill that will use it; None for any.
         observation: observation that it will be given; None for any.
 
@@ -291,7 +290,7 @@ def _telling(what: str) -> Iterator[None]:
 
 @contextmanager
 def quiet() -> Iterator[None]:
-    """Silence warnings: a player can do nothing about TorchScript's deprecation upstream."""
+    """Silence warnings, because a user cannot change TorchScript's deprecation."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         yield

@@ -4,11 +4,10 @@
 it from Python costs about as much as a few hundred physics steps of a small
 space. Here the same C functions are called from compiled code, by address, so a
 whole control tick runs without returning to Python. Within it even the batch costs
-more than it has to: it computes each body's rotation anew, which the step does
-again. :func:`load_bodies` and :func:`store_bodies` therefore read and write the numbers
-where Chipmunk has them. pymunk declares its batch interface experimental, and
-Chipmunk its structures private: whatever of them changes is found when arenas are made,
-and mended here.
+more than it has to: it computes each body's rotation, which the step does again. :func:`load_bodies` and
+:func:`store_bodies` therefore read and write the numbers where Chipmunk has them. pymunk declares its batch
+interface experimental, and Chipmunk its structures private: whatever of them changes is found when arenas are
+made, and mended here.
 """
 
 from __future__ import annotations

@@ -57,7 +57,7 @@ def filled(kind: np.dtype[np.void], source: object, **others: object) -> RecordA
 
 
 class Command:
-    """What a robot is told, as :class:`robobt.world.RobotCommand` [m/s, rad/s, rad]; flags are 0 or 1."""
+    """A robot's command, as :class:`robobt.world.RobotCommand` [m/s, rad/s, rad]; flags are 0 or 1."""
 
     vx: float
     vy: float

@@ -147,7 +147,7 @@ class SimWorld(World):
             self._report = self._perceive()
 
     def seen_kicks(self) -> list[tuple[RobotId, float]] | None:
-        """See :meth:`robobt.world.World.seen_kicks`; a kick that comes ticks after its command is told."""
+        """See :meth:`robobt.world.World.seen_kicks`; a kick ticks after its command is reported."""
         return [(robot, self.time) for robot in self.kicks] if self._arenas.late else None
 
     def step_bare(self) -> None:

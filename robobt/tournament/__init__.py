@@ -1,4 +1,4 @@
-"""Teams against each other, many times: entrants, pairings, the store of results, ratings and tests."""
+"""Tournaments of teams: entrants, pairings, the store of results, ratings and tests."""
 
 from typing import TYPE_CHECKING
 

@@ -1,7 +1,7 @@
-"""Which matches are being played, so that two programs that fill one store never play the same one.
+"""Claims of matches, so that two programs with one store never play the same match.
 
-A claim is a locked byte of a file beside the store. The system lets go of it when its program ends, however
-it ends: no claim of a killed program is left.
+A claim is a locked byte of a file beside the store. The system releases it when its program ends, even if it
+is killed.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ except ImportError:  # Windows has no such locks; there two programs may play a 
 
 
 class Claims:
-    """Claims beside a file. A context manager; what is claimed is let go of at its end."""
+    """Claims beside a file. A context manager that releases all claims at its end."""
 
     def __init__(self, path: Path) -> None:
         self._path = path.with_name(f".{path.name}.claims")
@@ -32,7 +32,7 @@ class Claims:
         os.close(self._file)
 
     def take(self, what: Hashable) -> bool:
-        """Claim something; False when another program has it.
+        """Claim a match; return False if another program has claimed it.
 
         Raises:
             OSError: the file system has no locks.
@@ -49,7 +49,7 @@ class Claims:
         return True
 
     def release(self, what: Hashable) -> None:
-        """Let go of a claim."""
+        """Release a claim."""
         if fcntl is not None:
             fcntl.lockf(self._file, fcntl.LOCK_UN, 1, _place(what))
 

@@ -1,4 +1,4 @@
-"""Who takes part in a tournament: what a side's robots play, whichever side and scenario it is."""
+"""The entrants of a tournament: the plays of a side's robots, for either side and any scenario."""
 
 from __future__ import annotations
 
@@ -28,15 +28,15 @@ from robobt.plays.private_files import join_play, split_play
 from robobt.world.game import Team
 
 _MARK = "entrant"
-"""The field that tells an entrant's file from a file of a play."""
+"""The field that distinguishes an entrant's file from a play's file."""
 
 
 class EntrantError(ConfigError):
-    """An entrant that cannot take part; the message is one line that names its file or text."""
+    """An entrant cannot take part; the message is one line that names its file or text."""
 
 
 class Part(Settings):
-    """What one robot plays."""
+    """The play of one robot."""
 
     play: str = Field(
         max_length=4000,
@@ -87,11 +87,12 @@ class Entrant:
     """A team that can play either side of any scenario.
 
     Attributes:
-        name: what it is called in tables.
+        name: name in tables.
         source: the file or text it comes from.
-        players: what the field players play, in the scenario's order; the last is also all that follow.
-        goalkeeper: what the goalkeeper plays; None for what blue's plays in the scenario.
-        program: the program that commands its robots; None where they play trees.
+        players: plays of the field players, in the scenario's order; the last one also applies to all further
+            players.
+        goalkeeper: play of the goalkeeper; None for the play of blue's goalkeeper in the scenario.
+        program: the program that commands its robots; None if they play trees.
     """
 
     name: str
@@ -110,7 +111,7 @@ class Entrant:
         return [*self.players, *([self.goalkeeper] if self.goalkeeper else [])]
 
     def digest(self) -> str:
-        """Hash what it plays, files by their contents: an edited tree or another model is another team."""
+        """Hash its plays, with files' contents: an edited tree or another model makes another team."""
         parts = self.parts
         says: list[Any] = [
             part and part.model_dump() for part in (*self.players, self.goalkeeper, self.program)
@@ -141,7 +142,7 @@ def read_entrant(text: str, params: Mapping[str, object] | None = None, name: st
         text: a play's name, a file of a play, a play of a Python file as in ``my_team.py:striker``, an
             entrant's file (YAML with the field ``entrant``), or a scenario's side as in ``six_v_six:blue``.
         params: parameters of the play; for plays only.
-        name: what the entrant is called; by default the text, or as its file says.
+        name: name of the entrant; by default the text, or the name in its file.
 
     Raises:
         EntrantError: there is none, or its file is wrong.

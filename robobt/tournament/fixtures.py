@@ -1,4 +1,4 @@
-"""Who meets whom: every pairing in rounds, each round once from either side with the same seed."""
+"""The fixtures: every pairing in rounds, each round once from either side with the same seed."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ class Fixture(NamedTuple):
 
 
 def pairings(names: Sequence[str], against: str | None = None) -> list[tuple[str, str]]:
-    """Return who meets whom: everybody everybody else, or everybody the one in ``against``."""
+    """Return the pairings: all against all, or all against the one in ``against``."""
     if against is None:
         return list(combinations(names, 2))
     return [(name, against) for name in names if name != against]

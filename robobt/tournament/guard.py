@@ -1,4 +1,4 @@
-"""Whose tree is being ticked, told to whoever outlives a match that crashes or hangs.
+"""Notes whose tree is being ticked, for the case that a match crashes or hangs.
 
 Plays run inside the process of the match. One that ends the process, or never returns, takes the match with
 it; the note that is left says which side it was.
@@ -19,23 +19,23 @@ from robobt.tree import Status
 from robobt.world.game import Team
 
 SILENCE = 300.0
-"""How long a match may stand still: compiling takes a minute or two on a busy machine [s]."""
+"""Longest time without progress of a match; compiling takes a minute or two on a busy machine [s]."""
 
 _LETTERS = {Team.BLUE: ord("b"), Team.YELLOW: ord("y")}
 _NOBODY = ord("-")
 
 _TICKS = 1000
-"""The watchdog is wound up once in so many ticks of trees: that costs as much as ticking one."""
+"""Number of ticks between resets of the watchdog; a reset costs as much as ticking a tree."""
 
 
 @contextmanager
 def guarded(match: MatchLoop, note: Path, silence: float = SILENCE) -> Iterator[None]:
-    """Note in a file whose tree is being ticked, and end this process when nothing happens any more.
+    """Note in a file whose tree is being ticked, and end this process if there is no more progress.
 
     Args:
-        match: what is played inside the block.
+        match: the match played inside the block.
         note: the file; removed when the block ends, unless by what ends the process.
-        silence: how long nothing may happen [s].
+        silence: longest time without progress [s].
     """
     note.write_bytes(bytes([_NOBODY]))
     try:
@@ -67,7 +67,7 @@ def guarded(match: MatchLoop, note: Path, silence: float = SILENCE) -> Iterator[
 
 
 def noted(note: Path) -> Team | None:
-    """Return whose tree was being ticked when a process died, None where nobody's was."""
+    """Return whose tree was being ticked when a process died, or None."""
     try:
         letter = note.read_bytes()[:1]
     except OSError:

@@ -43,12 +43,12 @@ def code_digest() -> str:
 
 @dataclass(slots=True, frozen=True)
 class Failure:
-    """A match that could not be played.
+    """A match could not be played.
 
     Attributes:
-        fixture: which.
-        problem: why.
-        again: whether it may be played if it is begun anew, as what failed is neither's play.
+        fixture: the match.
+        problem: the reason.
+        again: whether it may be played again, because neither side's play failed.
     """
 
     fixture: Fixture
@@ -58,7 +58,7 @@ class Failure:
 
 @dataclass(slots=True, frozen=True)
 class Job:
-    """What a worker needs to play any of the matches.
+    """Everything that a worker needs to play any of the matches.
 
     The registered plays are there because they are sent by name: a worker that receives them has imported
     the modules that register them.
@@ -79,7 +79,7 @@ class Job:
         """Return the job of a plan.
 
         Args:
-            plan: what is played.
+            plan: the tournament's plan.
             notes: folder for notes on who is deciding.
             outputs: folder for what programs print.
             recordings: which matches are recorded.
@@ -157,7 +157,7 @@ class Job:
 
 
 def set_up(know: Callable[[], None]) -> None:
-    """Get a worker ready: what plays print is nobody's, and must not end up among the figures.
+    """Prepare a worker: redirect plays' output, which must not mix with the figures.
 
     Args:
         know: tells it the users' Python files.

@@ -1,4 +1,4 @@
-"""What a tournament plays."""
+"""The plan of a tournament."""
 
 from __future__ import annotations
 
@@ -19,27 +19,27 @@ from robobt.worlds import scenario_settings, sim_world
 
 
 class TournamentError(RobobtError, ValueError):
-    """A tournament that cannot be played; the message is one line."""
+    """A tournament cannot be played; the message is one line."""
 
 
 @dataclass(slots=True, frozen=True)
 class Plan:
-    """What is played.
+    """The plan: scenario, entrants and rounds.
 
     Attributes:
         scenario: the field, the starts, the rules and the ends of every match.
-        entrants: who takes part.
-        rounds: how often each pairing meets with a new seed, each time once from either side.
-        seed: what the rounds' seeds follow from.
-        against: the name of the one that all others meet; None for everybody against everybody.
+        entrants: the entrants.
+        rounds: number of rounds of each pairing, each with a new seed and once from either side.
+        seed: seed from which the rounds' seeds are derived.
+        against: name of the entrant that all others meet; None for all against all.
         referee: makes the referee of a match.
-        silence: how long a match may stand still before it is given up [s].
+        silence: time without progress after which a match is given up [s].
         world: makes the world of a match.
         speed: simulated time over real time, for matches with programs; others are as fast as they are.
         first_round: number of the first round; those before it have other seeds.
 
     Raises:
-        TournamentError: two entrants have one name, there is none to meet, or nobody by the name.
+        TournamentError: two entrants have the same name, there are too few, or ``against`` is none of them.
         ScenarioError: an entrant does not fit the scenario.
     """
 
@@ -83,7 +83,7 @@ class Plan:
 
     @property
     def pairings(self) -> list[tuple[str, str]]:
-        """Return who meets whom."""
+        """Return the pairings."""
         return pairings(self.names, self.against)
 
     def fixtures(self) -> list[Fixture]:

@@ -1,4 +1,4 @@
-"""Plays a tournament: what is missing in the store, on worker processes, whatever the entrants do."""
+"""Plays a tournament's missing matches on worker processes, robust against crashing entrants."""
 
 from __future__ import annotations
 
@@ -29,15 +29,15 @@ Enough = Callable[[Collection[PlayedMatch], Collection[Fixture]], bool]
 Needless = Callable[[Fixture], bool]
 
 _POLL = 1.0
-"""How often it is looked whether another program has finished what it has claimed [s]."""
+"""Interval for checking whether another program has finished its claimed matches [s]."""
 
 _TELLS = 15
-"""It is told after so many looks in vain: the other program may be suspended."""
+"""Number of checks without progress after which a message is printed: the other program may be suspended."""
 
 
 @dataclass(slots=True)
 class Played:
-    """What became of a tournament.
+    """The result of a tournament.
 
     Attributes:
         matches: those that the store holds of the plan, in the order of rounds and names.
@@ -65,9 +65,9 @@ def play_tournament(
 ) -> Played:
     """Play what is missing in the store, and return all that is there.
 
-    A match that cannot be played, because of a fault of nobody's plays, is left out; one whose process a
-    play ends, or holds up for ever, twice, is lost by the side whose play it was. Several programs may do
-    this at once with one store: each match is played by one of them.
+    A match that cannot be played without either play's fault is left out. If a play twice ends a match's
+    process, or hangs forever, its side loses the match. Several programs may do this at once with one store:
+    each match is played by one of them.
 
     Args:
         plan: what is played.
@@ -77,7 +77,7 @@ def play_tournament(
         on_match: called with each match as it is there, first with those that the store holds already.
         enough: called after each match with all that are there and those that could not be played; once
             it says True no further match begins, and those in progress are not waited for.
-        needless: says of a match, before it begins, whether nobody has to know its result any more.
+        needless: returns, before a match begins, whether its result is no longer needed.
         on_wait: called once when nothing is left but matches that another program has claimed, and it has not
             ended one for a while, with their number.
         tell_outputs: whether a match that a program has lost by rule says where what it printed lies, which
@@ -173,7 +173,7 @@ class _Driver:
         return [one for one in self._wanted if not any(one in of for of in known) and not self._needless(one)]
 
     def claimed(self, missing: Iterable[Fixture], claims: Claims) -> Iterator[Fixture]:
-        """Yield what nobody else is playing; what another program has finished meanwhile counts as played."""
+        """Yield matches that no other program is playing; those finished meanwhile count as played."""
         left = deque(missing)
         self._again.clear()
         while (self._again or left) and not self.stop:

@@ -16,7 +16,7 @@ ELO = 400.0 / log(10.0)
 """Elo points of one unit of log odds: 400 points are odds of ten to one."""
 
 _PRIOR = 1.0
-"""Draws against an average stranger that everybody starts with: who wins all is rated, not infinitely."""
+"""Prior draws of every entrant against an average one, so that winning all matches gives a finite rating."""
 
 _STEPS = 100
 """Newton's steps at most; a fit takes about ten."""
@@ -35,7 +35,7 @@ class Rating:
 
 
 def expected_score(elo: float) -> float:
-    """Return the mean score, a draw being half a win, of who is so many Elo points stronger."""
+    """Return the mean score, with a draw as half a win, of an entrant this many Elo points stronger."""
     return float(1.0 / (1.0 + 10.0 ** (-elo / 400.0)))
 
 
@@ -50,13 +50,13 @@ def bradley_terry(
     The probability that one scores against another is the logistic function of the
     difference of their strengths; a draw is half a win. One draw each with an average
     stranger is added as a prior, which keeps the strengths finite. Intervals follow
-    from the curvature at the fit (Laplace); with draws they are rather too wide, for
-    a draw varies less than a win and a loss do.
+    from the curvature at the fit (Laplace); with draws they are slightly too wide, because a draw varies less
+    than a win and a loss.
 
     Args:
-        names: everybody who is rated.
+        names: all rated entrants.
         scores: for each match the two that met, and the first one's score: 1, 0.5 or 0.
-        reference: whose strength is 0; by default the mean of all is.
+        reference: the entrant with strength 0; by default the mean strength is 0.
         confidence: of the intervals.
 
     Returns:

@@ -1,4 +1,4 @@
-"""Which matches of a tournament are kept as recordings, and where."""
+"""The recordings of a tournament: which are kept, and where."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ class Keep(StrEnum):
     """Which recordings are kept."""
 
     WORST = "worst"
-    """The one in which the first entrant does worst, of each opponent."""
+    """The first entrant's worst match against each opponent."""
     LOST = "lost"
-    """Those that the first entrant loses."""
+    """The matches that the first entrant loses."""
     ALL = "all"
 
 

@@ -25,7 +25,7 @@ from robobt.tournament.ratings import expected_score
 from robobt.tournament.standings import rounds_of
 
 SCORES = np.array([0.0, 0.25, 0.5, 0.75, 1.0])
-"""What a pair of matches can score."""
+"""Possible scores of a pair of matches."""
 
 _UNSEEN = 1e-3
 """Pairs that an outcome counts for before any was seen, so that none is thought impossible."""
@@ -33,11 +33,11 @@ _UNSEEN = 1e-3
 _BISECTIONS = 60
 
 _MOST_ELO = 1000.0
-"""Strengths that can be told from never losing, or never winning, a match at all: a score of 99.7 % [Elo]."""
+"""Largest strength that can be distinguished from never losing a match: a score of 99.7 % [Elo]."""
 
 
 class Verdict(StrEnum):
-    """What a sequential test says."""
+    """The verdict of a sequential test."""
 
     BETTER = "better"
     NOT_BETTER = "not better"
@@ -108,19 +108,19 @@ class SequentialTest:
 
 
 class RunningTest:
-    """A sequential test that goes on while its matches are played.
+    """A sequential test that runs while its matches are played.
 
     Which rounds count says :func:`scores_of`.
 
     Args:
         test: what is asked.
-        first: who may be better.
-        second: better than whom.
+        first: the entrant that may be better.
+        second: the entrant it is compared with.
         first_round: number of the first round that counts.
 
     Attributes:
-        verdict: what it says so far.
-        rounds: how many rounds it took.
+        verdict: the verdict so far.
+        rounds: number of rounds so far.
         ratio: the log-likelihood ratio there.
     """
 

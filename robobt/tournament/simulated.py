@@ -1,4 +1,4 @@
-"""How often a sequential test errs, and how long it takes: many tests of entrants of known strength."""
+"""Error rates and durations of a sequential test, from many tests of entrants of known strength."""
 
 from __future__ import annotations
 
@@ -87,16 +87,16 @@ def simulate(
     draws: float = 0.25,
     spread: float = 100.0,
 ) -> Simulated:
-    """Make many tests of an entrant that is stronger by so many points.
+    """Simulate many tests of an entrant that is stronger by ``elo`` points. Return the results.
 
     Args:
         test: what is asked.
         elo: by how much the entrant is stronger [Elo].
         tests: how many are made.
-        most_rounds: when a test is given up.
-        rng: where the results come from.
+        most_rounds: number of rounds after which a test is given up.
+        rng: source of randomness.
         draws: share of draws between equals, as for :func:`round_chances`.
-        spread: what starts are worth, likewise [Elo].
+        spread: standard deviation of the starts' advantage, as for :func:`round_chances` [Elo].
     """
     chances = round_chances(elo, draws, spread)
     low, high = test.bounds

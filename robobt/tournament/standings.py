@@ -1,4 +1,4 @@
-"""What a tournament says: ratings, figures of each entrant, and each encounter with its test."""
+"""The results of a tournament: ratings, figures of each entrant, and tests of each encounter."""
 
 from __future__ import annotations
 
@@ -77,7 +77,7 @@ class Encounter:
 
 @dataclass(slots=True, frozen=True)
 class Standings:
-    """What a tournament says.
+    """The results of a tournament.
 
     Attributes:
         matches: how many were played.
@@ -92,7 +92,7 @@ class Standings:
     encounters: Sequence[Encounter]
 
     def remarks(self) -> list[str]:
-        """Return what a reader has to know besides: repeated matches, forfeits, failures of trees."""
+        """Return notes for the reader: repeated matches, forfeits, failures of trees."""
         found = []
         if self.distinct < self.matches:
             found.append(
@@ -149,11 +149,11 @@ def distinct(matches: Iterable[PlayedMatch]) -> list[PlayedMatch]:
 
 @dataclass(slots=True, frozen=True)
 class Paired:
-    """Two entrants by how they did against the same opponents, from the same sides with the same seeds.
+    """Two entrants compared by their matches against common opponents, from the same sides and seeds.
 
     Attributes:
         first, second: their names.
-        opponents: whom both have met so.
+        opponents: the common opponents.
         rounds: of how many rounds and opponents, those that repeat another one counted once.
         lead: goals a match by which the first did better than the second; None without a round.
         low, high: its 95 % interval; None where rounds do not differ.

@@ -3,9 +3,8 @@
 Tables: ``tournament`` (what is played: field, value), ``entrants`` (name, digest, source) and ``matches``,
 one row a match by ``blue``, ``yellow`` and ``round``. Its other columns are the fields of
 :class:`~robobt.tournament.played.PlayedMatch` and, behind ``blue_`` and ``yellow_``, those of its
-sides. Rows are only ever
-added: triggers refuse whatever else. Two stores of one tournament hold the same rows but for ``wall_time``
-and ``finished``, in whichever order they were played.
+sides. Rows are only ever added: triggers refuse all other changes. Two stores of one tournament hold the same
+rows, except for ``wall_time`` and ``finished``, in any order of playing.
 """
 
 from __future__ import annotations
@@ -27,7 +26,7 @@ from robobt.tournament.played import COLUMNS, PLAIN, PlayedMatch, SideResult
 FORMAT = "robobt-tournament 1"
 
 _PATIENCE = 60.0
-"""How long another writer is waited for [s]."""
+"""Longest wait for another writer [s]."""
 
 _TRIES = 600
 """How often it is looked whether another program has let go in that time."""
@@ -66,9 +65,9 @@ class Store(Closing):
     """An open store. A context manager.
 
     Args:
-        path: the file; made where there is none, unless nothing is said of what is played. Then one that
-            cannot be written, or whose folder cannot, can still be read.
-        played: what is played, by field; None opens a store that exists, whatever it holds.
+        path: the file; created if missing and ``played`` is given. Without ``played`` a store in a read-only
+            file or folder can be read.
+        played: description of the tournament, by field; None opens any existing store.
 
     Attributes:
         played: what is played, by field.
@@ -104,7 +103,7 @@ class Store(Closing):
         self._connection.close()
 
     def enter(self, entrants: Iterable[Entrant]) -> None:
-        """Enter who takes part.
+        """Add the entrants.
 
         Raises:
             StoreError: the store knows another team by that name.
@@ -123,7 +122,7 @@ class Store(Closing):
             return self._add([match]) == 1
 
     def match(self, fixture: Fixture) -> PlayedMatch | None:
-        """Return a match, None where it has not been played."""
+        """Return a match, or None if it has not been played."""
         found = self._all("SELECT * FROM matches WHERE blue = ? AND yellow = ? AND round = ?", fixture)
         return PlayedMatch.of_row(dict(found[0])) if found else None
 
@@ -138,7 +137,7 @@ class Store(Closing):
         return [match for match in played if names is None or {match.blue, match.yellow} <= {*names}]
 
     def merge(self, other: Store) -> int:
-        """Take over what another store of the same tournament holds; return how many matches were new.
+        """Copy the matches of another store for this tournament; return how many matches were new.
 
         Raises:
             StoreError: the other is of another tournament, knows another team by one of the names,

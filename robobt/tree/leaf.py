@@ -139,8 +139,8 @@ class Leaf(Behaviour, Bound[StoreT]):
     def terminate(self, new_status: Status) -> None:
         """End for py_trees; override :meth:`on_done` or :meth:`on_interrupt` instead.
 
-        py_trees also stops finished nodes with INVALID when their parent starts
-        anew; that is neither an end nor an interruption and reaches nobody.
+        py_trees also stops finished nodes with INVALID when their parent restarts; that is neither an end nor
+        an interruption and calls neither method.
         """
         if new_status is not Status.INVALID:
             self.on_done(new_status)

@@ -181,7 +181,7 @@ class TreeChanges:
 
     def __init__(self, watch: TreeWatch) -> None:
         count = len(watch.parents)
-        # As of the last change that was told.
+        # As of the last change that was reported.
         self._before = TreeState((Status.INVALID,) * count, (), (), False)
         self._raw = ["-"] * count
         self._letters = "-" * count

@@ -137,7 +137,7 @@ def _xml(text: str) -> str:
 def show_in_notebooks() -> None:
     """Let a notebook show any tree as a picture, with the statuses of its last tick once it was ticked.
 
-    Composites are py_trees' own, so that IPython is told, where it runs, how a node is shown.
+    Composites are py_trees' classes, so IPython, if it runs, gets a function for showing nodes.
     """
     ipython = sys.modules.get("IPython")
     shell = None if ipython is None else ipython.get_ipython()

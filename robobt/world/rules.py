@@ -188,7 +188,7 @@ def area_distance(field: FieldGeometry, defender: Team, x: float, y: float) -> f
 
 @compilable
 def hull_gap(robot: Robot, ball: Ball) -> float:
-    """Return the gap between the robot's round hull and the ball [m]; below 0 where it lies in the mouth."""
+    """Return the gap between the robot's round hull and the ball [m]; below 0 if it is in the mouth."""
     return hypot(robot.x - ball.x, robot.y - ball.y) - ROBOT_RADIUS - BALL_RADIUS
 
 

@@ -53,7 +53,7 @@ class RobotState:
         heading: direction of the mouth in (-pi, pi], counter-clockwise from +x [rad].
         vx, vy: velocity in field coordinates [m/s].
         omega: turning rate, counter-clockwise positive [rad/s].
-        ball_contact: the ball lies in the mouth (the break-beam sensor).
+        ball_contact: whether the ball is in the mouth (the break-beam sensor).
         limits: what the robot can do, as far as known.
     """
 
@@ -181,7 +181,7 @@ class Frame(Derived):
         """Return all its numbers except the game's, as little-endian float64.
 
         Time; x, y, vx, vy of the ball; how many own robots there are, and the id, x, y, heading,
-        vx, vy, omega and ball contact of each; the same of the opponents; z and vz of a ball in the air.
+        vx, vy, omega and ball contact of each; these values for the opponents; z and vz of a ball in the air.
         """
         ball = self.ball
         numbers = [self.time, ball.x, ball.y, ball.vx, ball.vy]

@@ -86,7 +86,7 @@ _LOST_FOR = 3
 """Number of such detections in a row that end a flight."""
 
 _MEMORY = 12
-"""Number of detections kept from before a kick."""
+"""Number of detections kept before a kick."""
 
 
 @dataclass(slots=True)

@@ -1,1 +1,1 @@
-"""What a model may consist of, seen before torch or onnxruntime see it; anything else is a ModelError."""
+"""Checks of a model's content before torch or onnxruntime reads it; anything not allowed is a ModelError."""

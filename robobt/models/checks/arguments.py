@@ -1,4 +1,4 @@
-"""Arguments in a graph that torch or the processor takes on trust, and what they may be."""
+"""Checks of arguments in a graph that torch or the processor would not check."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ _CODES: Mapping[str, frozenset[object]] = {
     "memory_format": frozenset({None, 0, 1}),
     "pin_memory": frozenset({None, False}),
 }
-"""Torch's numbers of real types, of dense tensors and of their order in memory; it looks none of them up."""
+"""Torch's numbers of real types, dense layouts and memory orders, which torch does not check."""
 
 _UNKNOWN = object()
 
 
 def check_arguments(module: Any) -> None:
-    """Check the arguments of a loaded module's operations, as far as they are no tensors.
+    """Check the arguments of a loaded module's operations that are not tensors.
 
     Args:
         module: the module as torch holds it, of which torch's annotations do not tell all.
@@ -35,7 +35,7 @@ def check_arguments(module: Any) -> None:
     from torch._C import parse_schema
 
     def known(value: Value) -> object:
-        """Return what a value is in every run."""
+        """Return a value that is constant in every run."""
         node = value.node()
         match node.kind():
             case "prim::Constant":

@@ -1,4 +1,4 @@
-"""Bounds on what a network may do, found out with tensors that have a shape and no memory."""
+"""Bounds on a network's work, computed with tensors that have a shape but no memory."""
 
 from __future__ import annotations
 

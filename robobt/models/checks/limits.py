@@ -1,12 +1,12 @@
-"""How much memory and work a network may take, whatever runs it."""
+"""Limits of a network's memory and work, for every runtime."""
 
 from __future__ import annotations
 
 BATCH = 64
-"""Most observations that a network is run on at once; larger batches are cut into such."""
+"""Largest number of observations per run of a network; larger batches are split."""
 
 MAX_BYTES = 64 * 2**20
-"""What all steps of a network may answer together, for a batch [bytes]."""
+"""Largest total output of all steps of a network, for a batch [bytes]."""
 
 ELEMENT = 64
 """Work of an operation on one number: a power takes as long as that many steps of a product of matrices."""
@@ -18,7 +18,7 @@ _LARGEST_WORK = {1: 2**26, BATCH: 2**30}
 
 
 def largest_work(batch: int) -> int:
-    """Return how many multiplications all steps of a network may take together, for so many observations.
+    """Return the number of multiplications allowed for all steps of a network, for this many observations.
 
     Loading a file runs it on one observation as often as there are in a batch, and on batches a few times.
     """

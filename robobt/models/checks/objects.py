@@ -31,7 +31,7 @@ class Storage:
 
 @dataclass(frozen=True)
 class Tensor:
-    """A tensor of so many bytes."""
+    """A tensor with this many bytes."""
 
     size: int
 

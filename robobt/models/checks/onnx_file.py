@@ -128,7 +128,7 @@ def _check_tensors(model: onnx.ModelProto) -> None:
 
 
 def _check_shapes(model: onnx.ModelProto, batch: int, size: int) -> None:
-    """Bound what the nodes answer to so many observations, by ONNX's own inference of shapes."""
+    """Bound the nodes' outputs for this many observations, by ONNX's inference of shapes."""
     weights = {tensor.name for tensor in model.graph.initializer}
     given = [one for one in model.graph.input if one.name not in weights]
     if len(given) != 1:

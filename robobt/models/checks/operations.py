@@ -30,7 +30,7 @@ TRAPPING = frozenset({"div", "floor_divide", "floordiv", "fmod", "remainder"})
 """Operations that end the process where they divide an integer by 0, or the smallest one by -1."""
 
 MOST_PIECES = 1000
-"""Into so many pieces an operation may cut a tensor: each takes memory, however small it is."""
+"""Number of pieces into which an operation may split a tensor, because each piece takes memory."""
 
 _SHAPES = "__contains__ __getitem__ __is__ __isnot__ __not__ dim len list size"
 

@@ -1,4 +1,4 @@
-"""The code in a TorchScript archive, read by Python's parser and written anew for torch's.
+"""The code in a TorchScript archive, read by Python's parser and written again for torch's.
 
 Torch's dialect of Python can do more than a network needs. What is not named here is refused, and torch
 is given what was understood here rather than the file's own text, so that the two parsers

@@ -1,9 +1,8 @@
 """Shots spread evenly over range, angle and goalkeeper offset, at any point of the goal line.
 
-The shots of an attacker that picks them leave out what it would not dare. Here
-trial i is the i-th point of a low-discrepancy sequence over the scene, so that
-any number of trials in a row covers it evenly, close targets and goalkeepers on
-the line included.
+An attacker that chooses its shots never takes difficult ones. Here trial i is the i-th point of a
+low-discrepancy sequence over all scenes, so that any number of consecutive trials covers them evenly,
+including close targets and goalkeepers on the line.
 """
 
 from __future__ import annotations
@@ -28,7 +27,7 @@ from robobt.world.rules import in_their_defense_area
 from robobt.world.state import ROBOT_RADIUS
 
 FARTHEST = 4.8
-"""Ball to goal centre [m]; the paper's shots reach to 4.6 m."""
+"""Distance from ball to goal centre [m]; the paper's shots reach to 4.6 m."""
 
 WIDEST = 1.3
 """Bearing of the ball off the straight way out of the goal [rad]."""

@@ -1,4 +1,4 @@
-"""Collecting shots: trials played until there are as many as asked for, on disk all the while."""
+"""Collecting shots: plays trials until the requested number is reached, always saved on disk."""
 
 from __future__ import annotations
 
@@ -23,19 +23,19 @@ PAPER_COUNT = TRAIN + TEST
 MAX_COUNT = 10_000_000
 
 _BARREN = 2000
-"""So many trials in a row without a shot mean that none will come."""
+"""Number of trials in a row without a shot after which the collection gives up."""
 
 _AHEAD = 4
 """Trials a worker holds at a time: they take milliseconds."""
 
 
 class CollectionError(RobobtError, RuntimeError):
-    """A collection could not be played to its end; the message is one line."""
+    """A collection could not be completed; the message is one line."""
 
 
 @dataclass(slots=True)
 class Collected:
-    """What a collection has come to.
+    """The result of a collection.
 
     Attributes:
         shots: in the file.
@@ -66,7 +66,7 @@ def collect_shots(
     workers: int = 1,
     on_shot: Callable[[], None] | None = None,
 ) -> Collected:
-    """Collect shots into a file, or go on with what a run before has left there.
+    """Collect shots into a file, or continue an earlier run's file. Return the result.
 
     Which shots they are depends on the settings and the count alone, not on the
     number of workers nor on how often the collection was interrupted. Ctrl-C ends

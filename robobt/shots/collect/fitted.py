@@ -33,7 +33,7 @@ _ASIDE = (0.4, 0.1)
 """Mean and standard deviation of the recorded goalkeepers' distance from the line of the shot [m]."""
 _FARTHEST_ASIDE = 0.8
 _TOWARDS = (0.55, 0.28)
-"""The same of their speed towards it [m/s]."""
+"""Mean and standard deviation of their speed towards that line [m/s]."""
 _DRIFT = 0.03
 """Standard deviation of their speed along it [m/s]."""
 _BEARING = 0.25
@@ -133,7 +133,7 @@ def _at_kick(field: FieldGeometry, ball: Point, traits: Traits, rng: np.random.G
     keeper = keeper_start(field, ball, target, float(inward * abs(aside)), float(rng.random()) ** 2)
     (x, y), (keeper_x, keeper_y) = ball, keeper
     across = (keeper_y - y) * cos(aim) - (keeper_x - x) * sin(aim)
-    # Nobody is faster towards the line than lets it stop there, but for a little.
+    # No goalkeeper is much faster towards the line than it can stop there.
     most = sqrt(2.0 * traits.braking * abs(across)) + 0.1
     towards = -float(np.sign(across)) * min(float(rng.normal(*_TOWARDS)), most)
     along = float(rng.normal(0.0, _DRIFT))

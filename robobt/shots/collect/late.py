@@ -1,4 +1,4 @@
-"""A world in which one robot does late what its tree decides, and a trial begins amid the play."""
+"""A world that delays one robot's commands, and in which robots move at the start."""
 
 from __future__ import annotations
 

@@ -36,7 +36,7 @@ SECTIONS: dict[str, Section] = {
 
 
 class Part(NamedTuple):
-    """So many shots of one scenario with one tolerance [m]."""
+    """A number of shots of one scenario with one tolerance [m]."""
 
     scenario: str
     tolerance: float

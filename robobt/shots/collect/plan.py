@@ -1,4 +1,4 @@
-"""What is asked of a collection of shots, and the set-up of each of its trials."""
+"""The settings of a collection of shots, and the set-up of each trial."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ from robobt.shots.keepers.population import Population
 from robobt.world.state import RobotId
 
 MID_RANGE, CLOSE_RANGE = 3.5, 2.5
-"""From how far the attacker on the move shoots in its two variants: ball to goal centre at most [m].
+"""Largest distances from ball to goal centre of shots on the move, for the two variants [m].
 
 Half of the paper's shots on the move were taken from within 3.35 m.
 """
 
 SHOT_SPEED = 7.5
-"""What RoboBulls sends for a shot [m/s]."""
+"""RoboBulls' kick speed of a shot [m/s]."""
 
 
 Section = tuple[tuple[float, float], tuple[float, float]]
@@ -29,7 +29,7 @@ Section = tuple[tuple[float, float], tuple[float, float]]
 
 
 class CollectionSettings(Settings):
-    """What a collection is made of: the same settings give the same shots."""
+    """Settings of a collection; the same settings give the same shots."""
 
     scenario: Literal["motion", "still", "both"] = Field(
         "both", description="how the attacker comes to shoot"

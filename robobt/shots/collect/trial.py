@@ -13,7 +13,7 @@ from robobt.shots.data.schema import Row, complete_row
 
 
 class Taken(NamedTuple):
-    """What came of one trial: its shot, None without one, and how long it lasted in the world [s]."""
+    """The result of one trial: its shot, or None, and its simulated duration [s]."""
 
     trial: int
     row: Row | None
@@ -21,7 +21,7 @@ class Taken(NamedTuple):
 
 
 def play_trial(settings: CollectionSettings, trial: int) -> Taken:
-    """Play one trial; the same settings and number give the same shot wherever it is played."""
+    """Play one trial; its shot depends only on the settings and the trial's number. Return the result."""
     attempt = (paper_attempt if settings.protocol == "paper" else balanced_attempt)(settings, trial)
     if settings.goalkeepers is not None:
         attempt = against_fitted(attempt, settings.goalkeepers)

@@ -1,4 +1,4 @@
-"""Sees a shot as it is taken: a world that writes down what was there when the kick went out."""
+"""Records shots: a world that stores the scene at the time of the kick."""
 
 from __future__ import annotations
 
@@ -96,7 +96,7 @@ def take_shot(attempt: Attempt, trial: int) -> tuple[Row | None, float]:
 
 
 def _turned_back(frame: Frame, shooter: RobotId) -> bool:
-    """Return whether an opponent has turned the ball back: what becomes of it then is another story."""
+    """Return whether an opponent has turned the ball back, so that its further way does not count."""
     touched = frame.last_touch
     return touched is not None and touched.team is not shooter.team and frame.ball.vx <= 0.0
 

@@ -1,4 +1,4 @@
-"""What is wrong with shot data."""
+"""Errors in shot data."""
 
 from __future__ import annotations
 
@@ -6,4 +6,4 @@ from robobt.config.errors import RobobtError
 
 
 class ShotDataError(RobobtError, ValueError):
-    """A file of shots is not what it should be; the message names the file, the row and the column."""
+    """A file of shots is invalid; the message names the file, the row and the column."""

@@ -27,7 +27,7 @@ DISTANCES = (0.0, 2.6, 3.0, 3.4, 3.8, 20.0)
 """Between which distances from shooter to target goals are counted [m]."""
 
 ANGLES = (0.0, 0.1, 0.14, 0.18, 0.25, 3.2)
-"""The same of the angle between the goalkeeper and the line of the shot, as the shooter sees it [rad]."""
+"""Bins of the angle between the goalkeeper and the line of the shot, as the shooter sees it [rad]."""
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,4 @@
-"""A population of goalkeepers: how those differ that a shot may meet."""
+"""A population of goalkeepers: the distribution of their traits."""
 
 from __future__ import annotations
 
@@ -25,8 +25,8 @@ class Traits(NamedTuple):
     Attributes:
         max_speed: top speed that it asks of its robot [m/s].
         acceleration: how fast the robot changes its velocity, in any direction [m/s^2].
-        braking: it drives so that it could stop at this rate [m/s^2].
-        delay: from what happens to what it does about it [s].
+        braking: deceleration with which it plans to stop [m/s^2].
+        delay: reaction time [s].
         offset: how far beside its place it stands, to the left of the line ball -> place [m].
         kick_speed: the ball's speed after the kick [m/s].
         kick_error: direction of the kick minus that of the aim [rad].

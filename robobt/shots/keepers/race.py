@@ -40,7 +40,7 @@ HELD = 0.11
 
 
 class Shot(NamedTuple):
-    """What the race starts from.
+    """The start of a race.
 
     Attributes:
         x, y: of the ball [m].
@@ -96,7 +96,7 @@ def _nearest(shot: Shot, traits: Traits, c: float, s: float) -> float:
     time, nearest, gap = 0.0, 99.0, 99.0
     while px < GOAL_LINE + BALL_RADIUS and gap <= nearest + REACH and speed > 0.0:
         if time >= traits.delay:
-            # To the nearest point of what is left of the ball's way, by the root of the distance.
+            # To the nearest point of the ball's remaining way, by the root of the distance.
             dx, dy = end_x - px, end_y - py
             squared = dx * dx + dy * dy
             share = ((kx - px) * dx + (ky - py) * dy) / squared if squared > 0.0 else 0.0

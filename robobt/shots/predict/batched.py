@@ -30,8 +30,7 @@ class Recipe:
     shots has not improved for ``patience`` epochs; the weights of the best of these
     epochs are kept. Meanwhile the learning rate is multiplied by ``plateau_factor``
     whenever that loss has not improved by :data:`PLATEAU_GAIN` for
-    ``plateau_patience`` epochs, down to ``least_rate``. The plateau is watched anew
-    after the warm-up.
+    ``plateau_patience`` epochs, down to ``least_rate``. The plateau count restarts after the warm-up.
 
     Source: the paper, section on training; the rest is Keras' default.
     """

@@ -16,7 +16,7 @@ from robobt.shots.predict.features import motion_features
 
 
 def best_predictor() -> Pipeline:
-    """Return what predicts best from a few hundred shots: quadratic logistic regression on b, x, L, v.
+    """Return the best predictor for a few hundred shots: quadratic logistic regression on b, x, L, v.
 
     To fit it on the author's training shots and predict others::
 

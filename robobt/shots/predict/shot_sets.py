@@ -1,4 +1,4 @@
-"""Which shots an experiment is made on."""
+"""The shots for an experiment."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Cross-validation of shot predictors, and what comes of it."""
+"""Cross-validation of shot predictors, and its results."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ Fold = tuple[NDArray[np.intp], NDArray[np.intp]]
 
 @dataclass(frozen=True)
 class Judgement:
-    """How good predictions are.
+    """Quality of predictions.
 
     Attributes:
         shots: how many were predicted.

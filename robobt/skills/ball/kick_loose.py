@@ -31,7 +31,7 @@ class Hold:
 
 @compilable
 def has_lasted(hold: Hold, now: float, heading: float, patience: float) -> bool:
-    """Note that an opponent holds the ball too; return whether it has done so long enough to be kicked loose.
+    """Note that an opponent holds the ball too; return whether the hold has lasted long enough to kick.
 
     ``heading`` is the robot's [rad], ``patience`` as in :class:`KickLoose`.
     """

@@ -1,4 +1,4 @@
-"""Tuning the parameters of a play: what is varied, which candidates are tried, and what came of it."""
+"""Tuning the parameters of a play: varied parameters, candidates and results."""
 
 from robobt.config.extras import need
 

@@ -1,4 +1,4 @@
-"""Candidates that play the same rounds against one team: who is surely worse is stopped."""
+"""Candidates that play the same rounds against one team; those that are certainly worse are stopped."""
 
 from __future__ import annotations
 
@@ -11,15 +11,15 @@ from robobt.tournament.sequential import scores_of
 
 
 class Race:
-    """What candidates have done so far.
+    """The candidates' results so far.
 
     A candidate is compared with whom it plays, and with the best candidate of before in the same rounds.
     Verdicts are about rounds in their order, so that they do not depend on which match ends first.
 
     Args:
-        against: whom all play.
+        against: the opponent of all candidates.
         best: scores of the best candidate of before by round; empty without one.
-        error: how often at most each comparison stops one that is not worse.
+        error: largest probability that a comparison stops a candidate that is not worse.
 
     Attributes:
         stopped: after how many rounds candidates were stopped, by name.

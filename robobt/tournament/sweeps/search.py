@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 @dataclass(slots=True)
 class Candidate:
-    """Values that were tried.
+    """A candidate: a set of tried values.
 
     Attributes:
         number: from 0, in the order of proposal.
@@ -51,7 +51,7 @@ class Candidate:
 
 @dataclass(slots=True)
 class Swept:
-    """What became of a search.
+    """The result of a search.
 
     Attributes:
         candidates: those that were tried, in the order of proposal.
@@ -76,19 +76,20 @@ def search(
     on_wait: Callable[[int], object] | None = None,
     tell_outputs: bool = True,
 ) -> Swept:
-    """Try candidates, and go on where a search that was stopped has left off.
+    """Try candidates, and continue a search that was stopped. Return the result.
 
-    Optuna is asked anew each time. What it is told comes from the store, so that it proposes the same again.
+    Optuna starts again each time and gets the results from the store, so that it proposes the same
+    candidates.
 
     Args:
-        sweep: what is tuned.
+        sweep: the sweep.
         path: its store.
         workers: processes; 0 is this process itself.
         on_progress: called with a number of matches that are played, or need not be played any more, and
             what is known so far.
         on_wait: called when another program holds this one up, as by
             :func:`robobt.tournament.play.play_tournament`.
-        tell_outputs: likewise.
+        tell_outputs: as for :func:`robobt.tournament.play.play`.
 
     Raises:
         SweepError: Optuna is not installed.
@@ -200,7 +201,7 @@ def _judge(one: Candidate, scores: Mapping[int, float], race: Race, swept: Swept
 
 
 def _tell(study: Study, trial: Trial, one: Candidate, scores: Mapping[int, float]) -> None:
-    """Tell Optuna what a candidate has done."""
+    """Report a candidate's result to Optuna."""
     state = load_optuna().trial.TrialState
     if one.score is None:
         study.tell(trial, state=state.FAIL)

@@ -1,4 +1,4 @@
-"""What a sweep tunes and against whom, and the sequential test that confirms what it finds."""
+"""A sweep's parameters and opponent, and the sequential test that confirms its result."""
 
 from __future__ import annotations
 
@@ -25,22 +25,22 @@ from robobt.worlds import sim_world
 
 @dataclass(slots=True, frozen=True)
 class Sweep:
-    """What is tuned, and how.
+    """A sweep: the parameters to tune, and the method.
 
     Candidates are proposed by Optuna's tree-structured Parzen estimator, ``at_once`` at a time, so that what
     is proposed does not depend on which match ends first.
 
     Attributes:
         scenario: the field, the starts, the rules and the ends of every match.
-        play: whose parameters are tuned.
+        play: the play to tune.
         params: those that stay as they are.
         varied: those that are varied.
-        against: whom every candidate plays.
+        against: the opponent of every candidate.
         candidates: how many are tried; where there are no more, all in turn.
         at_once: how many of them are proposed, and play, at a time.
         rounds: how many a candidate plays that is not stopped.
         seed: of the rounds and of what is proposed.
-        error: how often at most a candidate is stopped that is not worse.
+        error: largest probability that a candidate is stopped that is not worse.
         referee: makes the referee of a match.
         world: makes the world of a match.
 
@@ -140,7 +140,7 @@ def confirm(
     on_progress: Callable[[RunningTest], object] | None = None,
     tell_outputs: bool = True,
 ) -> tuple[RunningTest, Played]:
-    """Test sequentially whether a candidate is better than whom all have met, on seeds that nobody has seen.
+    """Test sequentially, on new seeds, whether a candidate is better than the common opponent.
 
     Args:
         sweep: what was tuned.

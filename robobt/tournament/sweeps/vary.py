@@ -1,4 +1,4 @@
-"""Which values the parameters of a play may take in a sweep."""
+"""The values of a play's parameters in a sweep."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _DIGITS = 4
 
 
 class SweepError(RobobtError, ValueError):
-    """A sweep that cannot be made; the message is one line."""
+    """A sweep is not possible; the message is one line."""
 
 
 @dataclass(slots=True, frozen=True)

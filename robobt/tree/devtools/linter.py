@@ -14,7 +14,7 @@ from py_trees.timers import Timer as WallClockTimer
 from robobt.tree.walk import node_path, preorder
 
 FOR_EVER = 1_000_000
-"""So many times are no bound: at 60 Hz more than four hours."""
+"""A count from which a limit is no bound: more than four hours at 60 Hz."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -21,7 +21,7 @@ from robobt.tree.walk import node_path
 class ScriptedLeaf(Behaviour):
     """Returns the statuses of a script in turn, a tick each, and the last one from then on.
 
-    Neither its end nor an interruption begins the script anew.
+    Neither its end nor an interruption restarts the script.
 
     Args:
         script: at least one status.

@@ -34,7 +34,7 @@ class BringsClosures(Protocol):
 
 
 class Marks:
-    """A :data:`Visit` that need only be told of some nodes, so that all others lose no time over it.
+    """A :data:`Visit` that is called for some nodes only, so that it costs no time for the others.
 
     Which nodes a tick reaches and what they have afterwards follows from what the leaves
     return, as long as every node on the way is of a known kind. So a tick at which each
@@ -105,7 +105,7 @@ class Marks:
                 self.change()
                 last, said = status, now if now.__class__ is str else None
             elif now is not said and (now.__class__ is not str or now != said):
-                # A text made anew is often the same; of anything else nobody knows what != does.
+                # A newly made text is often equal; for other objects the effect of != is unknown.
                 self.say(node)
                 said = now if now.__class__ is str else None
             return status

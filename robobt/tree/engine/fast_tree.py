@@ -92,7 +92,7 @@ def abandon(root: Behaviour) -> None:
             except LEAVING as error:
                 left = error
             except RecursionError:
-                # Of its own descendants one is itself; what raised first has been told.
+                # The root is among its descendants; the first exception has been reported.
                 pass
             except BaseException:
                 _log.warning(

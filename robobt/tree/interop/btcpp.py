@@ -20,7 +20,7 @@ class Attribute:
         default: its value where it is left out, None when it has to be given.
         milliseconds: whether it counts those, and the parameter seconds.
         count: whether it is a number of times: 1 or more, or -1 for without end.
-        endless: the type that does without end what the tag does so many times; None where the
+        endless: the type that does without limit what the tag does a number of times; None where the
             tag's own type takes the -1.
     """
 

@@ -16,8 +16,8 @@ class SequenceWithMemory(StockSequence):
 
     ``Sequence(memory=True)`` remembers its place only while it runs; this one
     begins again at its first child in two cases only: when all children have
-    succeeded, and after :meth:`restart`. A child that failed or was interrupted is
-    started anew. The same as BehaviorTree.CPP's ``SequenceWithMemory``.
+    succeeded, and after :meth:`restart`. A child that failed or was interrupted is restarted. It equals
+    BehaviorTree.CPP's ``SequenceWithMemory``.
 
     Attributes:
         place: index of the child that is ticked next.

@@ -31,8 +31,8 @@ class Switch(Composite):
     """Ticks the child of the present case, and only that one. The base of switches; define :meth:`case`.
 
     Has the status of that child; FAILURE, with the case as its reason, when there
-    is no child for it. The case is looked at anew at every tick. When it changes,
-    the child of the old case is interrupted before that of the new one is ticked.
+    is no child for it. The case is evaluated in every tick. When it changes, the child of the old case is
+    interrupted before that of the new one is ticked.
 
     Args:
         cases: a child for each case; one child may serve several cases.

@@ -11,7 +11,7 @@ from robobt.tree.nodes.timer import HasTime, Timer
 
 
 class TickDivider(Gate, Bound[HasTime]):
-    """Ticks its child only so often and repeats the child's last status in between.
+    """Ticks its child less often and repeats the child's last status in between.
 
     For what costs much and changes slowly, such as rating every shot. Not for
     skills that move the robot: commands are not repeated, so between its ticks the
@@ -22,8 +22,8 @@ class TickDivider(Gate, Bound[HasTime]):
     an answer may be as old as the node has been out of use; ``seconds`` bounds its age.
 
     Args:
-        every: tick the child at the first of so many ticks.
-        seconds: tick the child when so much time has passed since it was ticked [s].
+        every: tick the child once in this many ticks.
+        seconds: tick the child when this much time has passed since its last tick [s].
 
     Raises:
         ValueError: not exactly one of both is given, or ``every`` is below 1.

@@ -27,7 +27,7 @@ class ShootTowardsGoalEnv(TaskEnv):
     | 4 | the robot's turning rate, counter-clockwise | rad/s | top rate + 5.6, either way |
     | 5 | distance to the middle of the goal | m | [0, diagonal inside the walls] |
     | 6, 7 | sine and cosine of the angle from the heading to the left post | 1 | [-1, 1] |
-    | 8, 9 | the same of the right post | 1 | [-1, 1] |
+    | 8, 9 | sine and cosine of the angle to the right post | 1 | [-1, 1] |
 
     **Action**, float32, :data:`robobt.models.actions.SHOOT_ACTION`:
 
