@@ -22,8 +22,8 @@ CODE = ("robobt", "benchmarks", "paper")
 UNCHECKED = ("robobt/cli/",)
 """Beginnings of paths of code that is not checked; empty once all of it passes."""
 
-DOCUMENTS: tuple[str, ...] = ()
-"""Documents that are checked: ("README.md", "CONTRIBUTING.md", "docs/**/*.md") once all of them pass."""
+DOCUMENTS = ("README.md", "CONTRIBUTING.md")
+"""Documents that are checked, as patterns; with "docs/**/*.md" once all of those pass."""
 
 REFUSED = {
     "likewise": r"\blikewise\b",
@@ -104,6 +104,7 @@ def test_code_says_nothing_in_refused_phrases() -> None:
 
 def test_documents_say_nothing_in_refused_phrases() -> None:
     paths = [path for pattern in DOCUMENTS for path in sorted(ROOT.glob(pattern))]
+    assert len(paths) >= len(DOCUMENTS)
     assert [place for path in paths for place in found(path)] == []
 
 
