@@ -6,8 +6,8 @@
 The starts are the task's, but for those with the ball in a defence area, where no field player may go, and
 the others begin at rest. The worlds are those of ``transfer.py``; with an address it is that one alone, in
 which a simulator has to run (docs/league.md). The robot is ticked by the leaf ``GoToBall`` within the task's
-1.5 m/s and 1.395 rad/s, the others drive to and fro as in the task. Printed are the starts in which it came
-within 0.2 m of the ball and touched nobody, and those in which it touched somebody, with Wilson's 95 %
+1.5 m/s and 1.395 rad/s, the others drive back and forth as in the task. Printed are the starts in which it
+came within 0.2 m of the ball and touched nobody, and those in which it touched somebody, with Wilson's 95 %
 intervals, and how much later the model is there where both arrive. A world of the league is judged by what
 the vision's filter says: nobody touches a robot that is not seen.
 """
@@ -43,14 +43,14 @@ from robobt.worlds import SIM, world_from
 TASK = GoToBallAmongRobotsSettings()
 REACHED = TASK.contact.distance
 KEPT = 0.3
-"""How far the ball is from a defence area at least [m]."""
+"""Least distance of the ball from a defence area [m]."""
 DRAWN = 4000
 """Starts, of which those are played that have such a ball."""
 
 
 @skill
 class Patrol(Skill):
-    """Drive to and fro between two places, the second first; RUNNING for ever.
+    """Drive back and forth between two places, the second first; always RUNNING.
 
     Args:
         way: the two places and the top speed, as :data:`robobt.learning.opponents.patrols.TRAITS` names them.
@@ -77,7 +77,7 @@ class Patrol(Skill):
 def patrol(
     *, from_x: float = 0.0, from_y: float = 0.0, to_x: float = 1.0, to_y: float = 0.0, speed: float = 1.0
 ) -> Behaviour:
-    """Drive to and fro."""
+    """Drive back and forth."""
     return Patrol(way=(from_x, from_y, to_x, to_y, speed))
 
 
@@ -178,7 +178,7 @@ def scenario(simulator: object, policy: str, start: dict[str, float]) -> Scenari
 
 
 def played(match: Scenario, seed: int, factory: WorldFactory) -> tuple[float, float, float]:
-    """Return whether the ball was reached, whether somebody was touched first, and when it ended [s]."""
+    """Return whether the ball was reached, whether a robot was touched first, and when it ended [s]."""
     with MatchLoop(match, seed, factory) as playing:
         while playing.tick():
             truth = playing.world.truth()

@@ -1,4 +1,4 @@
-"""What each room does, as a hash: equal hashes, equal behaviour of what the probes reach.
+"""The behaviour of each room, as a hash: equal hashes mean equal behaviour in the probes.
 
 A probe is a short run with a fixed seed. Whether a figure still holds is asked of the rooms that it rests on
 (:mod:`benchmarks.measurements`).
@@ -18,7 +18,7 @@ from tempfile import TemporaryDirectory
 import numpy as np
 
 Probe = Callable[[], object]
-"""A run whose result, plain data, is what is hashed."""
+"""A run whose result, plain data, is hashed."""
 
 _SEED = 11
 
@@ -195,7 +195,7 @@ ROOMS: Mapping[str, tuple[Probe, ...]] = {
 
 
 def behaviour(rooms: Iterable[str] = tuple(ROOMS)) -> dict[str, str]:
-    """Return a hash of what each of ``rooms`` does, 12 hexadecimal digits.
+    """Return a hash of the behaviour of each of ``rooms``, 12 hexadecimal digits.
 
     Raises:
         KeyError: there is no such room.
@@ -204,7 +204,7 @@ def behaviour(rooms: Iterable[str] = tuple(ROOMS)) -> dict[str, str]:
 
 
 def processor() -> str:
-    """Return what compiled arithmetic depends on beside the code: hashes are compared on equal ones only."""
+    """Return the machine's properties that affect compiled arithmetic; hashes are compared for equal ones."""
     from llvmlite.binding import get_host_cpu_name
 
     return (

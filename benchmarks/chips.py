@@ -35,7 +35,7 @@ _SPEEDS = (2.5, 6.2)
 """Slowest and fastest kick [m/s]."""
 
 _SETTLE, _LATEST, _FOLLOWED = 0.3, 1.5, 1.0
-"""From when on it is kicked, until when it has to have been, and how long it is followed then [s]."""
+"""Earliest and latest time of the kick, and how long it is followed [s]."""
 
 _IN_THE_AIR = 0.05
 """A ball that the filter has higher than this flies [m]."""
@@ -43,7 +43,7 @@ _IN_THE_AIR = 0.05
 
 @dataclass(slots=True)
 class _Kick:
-    """What became of a kick.
+    """The result of a kick.
 
     Attributes:
         flew: whether the filter ever had the ball in the air.

@@ -1,6 +1,6 @@
 """How well a league world knows the time on a field whose clock is not this machine's, measured.
 
-The field is simulated, and so is this machine's clock: nothing is sent, and nobody waits.
+The field and this machine's clock are simulated: nothing is sent, and there is no waiting.
 """
 
 from __future__ import annotations
@@ -165,7 +165,7 @@ def lead_figures(peer: Peer, seconds: float = 20.0, seed: int = 0) -> dict[str, 
 
 
 class _Silent(KnownField):
-    """Tells nobody anything."""
+    """Sends nothing."""
 
     def tell(self, what: str, message: str) -> None:
         """Do nothing."""

@@ -1,4 +1,4 @@
-"""What viewers cost a match: its loop's processor time, late ticks, memory; and what a slow one gets."""
+"""The cost of viewers for a match: processor time, late ticks, memory; and the delay of a slow viewer."""
 
 from __future__ import annotations
 
@@ -194,7 +194,7 @@ def _ending(viewer: _Viewer) -> Iterator[_Viewer]:
 
 
 def _memory() -> float:
-    """Return what this process holds of the machine's memory [MiB], 0 where nobody tells."""
+    """Return this process's memory [MiB], 0 if unknown."""
     status = Path("/proc/self/status")
     if not status.exists():
         return 0.0

@@ -1,4 +1,4 @@
-"""What judging many shots and training many networks at once saves."""
+"""Time saved by judging many shots and training many networks at once."""
 
 from __future__ import annotations
 

@@ -84,7 +84,7 @@ def _run(
 
 
 class _Chance:
-    """Draws every learner's actions; where a script plays there is nobody to draw for."""
+    """Draws every learner's actions; with a script there are no learners."""
 
     def __init__(self, task: SoccerTask) -> None:
         self._rng = np.random.default_rng(SEED)

@@ -1,4 +1,4 @@
-"""Results that nobody played, to measure what takes them."""
+"""Made-up results, to measure the driver and the store."""
 
 from __future__ import annotations
 

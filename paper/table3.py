@@ -27,7 +27,7 @@ RETRAINED = "table_one"
 """The model that is trained again and again with the paper's recipe."""
 
 MOST_SHOTS = 2000
-"""Shots that small networks learn from at most, and a cross-validation is made of: four times the paper's.
+"""Largest number of shots for training small networks and for cross-validation: four times the paper's.
 
 Each step of a network's training sees sixteen of them: more take hours and change nothing.
 """

@@ -1,4 +1,4 @@
-"""Table 4's row that nobody could repeat: a person with a game controller."""
+"""Table 4's row that cannot be repeated: a person with a game controller."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ COUNTDOWN = 3.0
 
 
 class HumanRuns:
-    """Lets whoever steers the live page drive the robot of each run, from its start to its end.
+    """Lets the steering viewer of the live page drive the robot of each run, from start to end.
 
     A run begins when the page is there and the countdown is over; its clock, start and ends are
     those of the other rows.

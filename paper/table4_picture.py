@@ -1,4 +1,4 @@
-"""Table 4 as a picture: how long everybody takes to the ball and to the shot."""
+"""Table 4 as a picture: the times to the ball and to the shot."""
 
 from __future__ import annotations
 

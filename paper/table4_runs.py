@@ -23,7 +23,7 @@ from robobt.skills.ball.go_to_ball import HANDOVER_DISTANCE
 from robobt.worlds import sim_world
 
 Show = Callable[[MatchLoop], Callable[[], bool]]
-"""Shows a match to somebody and returns what plays its next tick, False when it is over."""
+"""Shows a match to a person and returns a function that plays its next tick and returns False at the end."""
 
 _GOAL = "goal_blue"
 _BESIDE = -1
@@ -37,7 +37,7 @@ class Attempt:
     Attributes:
         trial: its number, from 0.
         approach: start until robot and ball are 0.2 m apart, between two frames by their straight line [s].
-        to_ball: start until the ball first lies in the mouth, as the paper counts [s].
+        to_ball: time from the start until the ball is first in the mouth, as the paper counts [s].
         shoot: from then until the kick [s].
         goal: whether it went in.
         minimum: the shortest possible times from this start, as a :class:`Minimum`'s; None where the start
@@ -59,7 +59,7 @@ class Attempt:
 
     @property
     def pick_up(self) -> float | None:
-        """From the end of the approach until the ball lies in the mouth [s]."""
+        """Time from the end of the approach until the ball is in the mouth [s]."""
         return None if self.approach is None or self.to_ball is None else self.to_ball - self.approach
 
     @property
@@ -104,7 +104,7 @@ class _Task(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class _Job:
-    """What a worker needs to play any of the runs."""
+    """Everything that a worker needs to play any of the runs."""
 
     series: tuple[Series, ...]
     world: WorldFactory

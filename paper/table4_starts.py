@@ -1,4 +1,4 @@
-"""What Table 4 is played from: starts, limits, and the shortest possible times."""
+"""Starts and limits of Table 4, and the shortest possible times."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from robobt.world.geometry import Point
 from robobt.world.state import BALL_RADIUS, Frame
 
 SHOOTER = "blue 0"
-"""The robot that all of it is about."""
+"""The robot that is measured."""
 
 _GRSIM = PRESETS["grsim"].limits
 
@@ -30,10 +30,10 @@ LIMITS: dict[str, dict[str, float]] = {
     "pilot": {"max_speed": 1.5, "acceleration": 2.5, "side_acceleration": 2.5},
     "own": {},
 }
-"""What every robot of a table may do, by name.
+"""The limits of every robot of a table, by name.
 
-The paper's 1.5 m/s with grSim's acceleration, the same speed with the 2.5 m/s^2 that RoboBulls' pilot
-plans with, and whatever the preset's robots can.
+The paper's 1.5 m/s with grSim's acceleration, that speed with the 2.5 m/s^2 of RoboBulls' pilot, and the
+preset's own limits.
 """
 
 Starts = Literal["drawn", "paper"]

@@ -1,4 +1,4 @@
-"""The engine over py_trees: leaf base, runner, registry. Knows nothing of physics.
+"""The engine over py_trees: leaf base, runner, registry. It is independent of physics.
 
 Composites and decorators are py_trees' own, under their own names.
 """

@@ -1,4 +1,4 @@
-"""Values that are chosen by name: something registered, alone or with settings."""
+"""Values chosen by name: registered objects, with or without settings."""
 
 from __future__ import annotations
 
@@ -17,18 +17,18 @@ from robobt.tree.registry import Registry
 
 @dataclass(frozen=True)
 class ByName:
-    """Annotates a parameter that takes something registered by its name, alone or with settings.
+    """Annotates a parameter that takes a registered object by name, alone or with settings.
 
     With ``Annotated[str | Mapping[str, object] | ShotRater, ByName(RATERS, ShotRater)]`` a file may say
     ``expected_goal`` or ``{name: expected_goal, threshold: 0.8}``, and Python may give a rater as well.
-    What has settings is registered as a pydantic model, whose fields they are. Validation makes a model
-    of a mapping; a name stays a name, in a mapping too where what it names has no settings.
+    An object with settings is registered as a pydantic model with these fields. Validation turns a mapping
+    into the model; a name stays a name, also in a mapping if the object has no settings.
 
     Args:
-        registry: what is known by name.
-        made: the type of what is registered, once it is made.
-        others: whether a name that is not in the registry is known all the same, as a model's may be.
-        also: how messages end that say which names there are, where ``others`` knows more.
+        registry: the registry of known names.
+        made: type of the built objects.
+        others: returns whether a name that is not in the registry is known, such as a model's name.
+        also: end of messages that list the known names, if ``others`` knows more.
     """
 
     registry: Registry[Any]
@@ -40,10 +40,10 @@ class ByName:
         return self.registry.kind
 
     def make(self, value: object, *, strict: bool = False) -> Any:
-        """Return what a name or a mapping stands for; anything else is returned as it is.
+        """Return the object for a name or a mapping; anything else is returned unchanged.
 
-        A name that only ``others`` knows stands for itself.
-        With ``strict`` settings are converted as those of strict JSON are.
+        A name known only to ``others`` is returned unchanged. With ``strict`` settings are converted as those
+        of strict JSON are.
 
         Raises:
             FieldError: a mapping does not fit, at this field of it.
@@ -68,7 +68,7 @@ class ByName:
         return self._made(name, settings, strict)
 
     def check(self, name: str) -> None:
-        """Refuse a name that nothing has.
+        """Refuse an unknown name.
 
         Raises:
             ValueError: the message lists the names there are.

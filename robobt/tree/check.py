@@ -32,18 +32,16 @@ class WiringError(RobobtError, ValueError):
 
 
 def check_tree(root: Behaviour, store: type, given: Collection[str] = ()) -> None:
-    """Check what the nodes below ``root`` say they read from and write to the store.
+    """Check the store entries that the nodes below ``root`` declare to read and write.
 
-    * What is read or written is an entry of the store, an attribute that its class
-      annotates or defines.
-    * Where a node names the entry's type, that type fits: what is written may be
-      kept there, and what is kept there, None aside, may be read.
-    * What a leaf needs (:meth:`~robobt.tree.leaf.Leaf.needs`) is written by a node
-      that does not need it itself, or is given. In which order they are ticked is
-      not looked at.
+    * Each is an entry of the store: an attribute that its class annotates or defines.
+    * If a node names the entry's type, that type fits: a written value may be stored there, and a stored
+      value, None aside, may be read.
+    * An entry that a leaf needs (:meth:`~robobt.tree.leaf.Leaf.needs`) is written by a node that does not
+      need it itself, or is given. The order of ticks is not checked.
 
-    Entries that are ``given`` are filled in from outside the tree. Nodes that are no tree, as where one is
-    in two places, are a fault as well.
+    Entries that are ``given`` are filled in from outside the tree. Nodes that form no tree, for example one
+    node in two places, are also a fault.
     """
     if (fault := fault_of(root)) is not None:
         raise WiringError([f"{node_path(fault[0])}: {fault[1]}"])
@@ -112,7 +110,7 @@ def _fits(verb: str, declared: object, kept: object) -> bool:
     if Any in (declared, kept):
         return True
     if verb == "reads":
-        # None is what an entry holds before it is written.
+        # An entry is None before it is written.
         source, target = members_of(kept) - {types.NoneType}, members_of(declared)
     else:
         source, target = members_of(declared), members_of(kept)
@@ -125,7 +123,7 @@ def _is_a(one: object, other: object) -> bool:
     cls = typing.get_origin(one) or one
     if not isinstance(other, type) or not isinstance(cls, type):
         return False
-    # An int is as good as a float, as everywhere in Python's typing.
+    # An int is accepted as a float, as everywhere in Python's typing.
     return issubclass(cls, other) or (cls is int and other is float)
 
 

@@ -1,4 +1,4 @@
-"""Finding what registers itself by the folder it lies in."""
+"""Importing all modules of a folder, so that they register their content."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from pkgutil import walk_packages
 
 
 def import_all(package: str, path: Iterable[str]) -> None:
-    """Import every module below a package in order of their names, so that each registers what it holds.
+    """Import every module below a package in order of name, so that each registers its content.
 
     A package's own ``__init__`` calls it with its ``__name__`` and, as ``path``, its ``__path__``.
     """

@@ -1,4 +1,4 @@
-"""A tree on paper: as text and as DOT, with or without the statuses of its last tick."""
+"""Drawings of a tree: as text and as DOT, with or without the statuses of its last tick."""
 
 from __future__ import annotations
 
@@ -36,14 +36,14 @@ COLOURS = {
 
 @dataclass(slots=True, frozen=True)
 class NodeDescription:
-    """What a node is, in words.
+    """A description of a node.
 
     Attributes:
         name: the name its author gave it.
         type: name of its class.
         kind: composite, decorator or leaf.
-        glyph: the literature's sign for its kind of control: → ? ⇉ for composites, ◇ for
-            decorators, nothing for leaves.
+        glyph: the usual symbol for its kind of control: → ? ⇉ for composites, ◇ for decorators, nothing for
+            leaves.
         detail: "memory" or "reactive" for sequences and selectors, the policy of a parallel,
             for the rest the parameters that differ from their defaults ("speed=1.5, style=own").
     """
@@ -116,7 +116,7 @@ def _short(value: object) -> str:
         except Exception:
             text = "<"
         if text.startswith("<"):
-            # A default repr holds an address, which would differ from run to run.
+            # A default repr contains an address, which differs between runs.
             text = getattr(value, "__name__", type(value).__name__)
     return text if len(text) <= _LONGEST_VALUE else text[: _LONGEST_VALUE - 1] + "…"
 

@@ -1,4 +1,4 @@
-"""The base of every leaf: a py_trees behaviour with a typed store and a lifecycle that reads aloud."""
+"""The base of every leaf: a py_trees behaviour with a typed store and a readable lifecycle."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ Entries: TypeAlias = tuple[str, ...] | Mapping[str, object]
 
 
 class Bound(Generic[StoreT]):
-    """What :func:`bind` gives the robot's store before the first tick: leaves, and nodes that need it."""
+    """A node that gets the robot's store from :func:`bind` before the first tick: a leaf, for example."""
 
     store: StoreT
     _given: tuple[tuple[object, ...], dict[str, object]]
@@ -59,8 +59,8 @@ class Leaf(Behaviour, Bound[StoreT]):
 
     Attributes:
         reads, writes: the store's entries the leaf uses.
-        optional: those of ``reads`` that it can do without.
-        condition: whether it only looks, and neither commands anything nor runs on.
+        optional: entries of ``reads`` that may be missing.
+        condition: whether it only checks, and neither commands anything nor keeps running.
     """
 
     reads: ClassVar[Entries] = ()
@@ -82,10 +82,10 @@ class Leaf(Behaviour, Bound[StoreT]):
             raise ValueError(f"{wrong[0][0]} must be finite, not {short_repr(wrong[0][1])}")
 
     def needs(self) -> list[tuple[str, ...]]:
-        """Return what other nodes have to write into the store: of each item, one of its entries.
+        """Return the entries that other nodes have to write into the store: of each item, one entry.
 
-        That is what the leaf reads and cannot do without, except where a parameter
-        of the same name takes the entry's place.
+        These are the required entries that the leaf reads, unless a parameter with an entry's name replaces
+        it.
         """
         return [
             (entry,)
@@ -97,7 +97,7 @@ class Leaf(Behaviour, Bound[StoreT]):
         """Begin a run; called before its first tick."""
 
     def on_running(self) -> Status:
-        """Do one tick's work and return the status; SUCCESS or FAILURE ends the run."""
+        """Work for one tick and return the status; SUCCESS or FAILURE ends the run."""
         raise NotImplementedError(f"{type(self).__name__} does not define on_running")
 
     def on_done(self, status: Status) -> None:

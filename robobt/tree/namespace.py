@@ -1,4 +1,4 @@
-"""Names of one owner's: two may give different things the same name in one process."""
+"""Private namespaces: two owners may use the same name for different objects in one process."""
 
 from __future__ import annotations
 
@@ -9,10 +9,10 @@ from typing import Any
 
 
 class Namespace:
-    """What an owner has registered; inside :func:`within` it comes before what everybody has.
+    """An owner's registrations; inside :func:`within` they come before public ones.
 
-    Two owners, such as two states of a team's plays, may register the same names: neither finds the
-    other's, and nobody else finds either's.
+    Two owners, such as two versions of a team's plays, may register the same names: each finds only its own,
+    and others find neither.
     """
 
     def __init__(self) -> None:
@@ -27,13 +27,13 @@ _current: ContextVar[Namespace | None] = ContextVar("namespace", default=None)
 
 
 def current_namespace() -> Namespace | None:
-    """Return whose names come first, None where nobody's do."""
+    """Return the active namespace, or None."""
     return _current.get()
 
 
 @contextmanager
 def within(namespace: Namespace | None) -> Iterator[None]:
-    """Register and look up names in a namespace inside the block; with None only everybody's."""
+    """Register and look up names in a namespace inside the block; with None only public ones."""
     token = _current.set(namespace)
     try:
         yield

@@ -1,8 +1,8 @@
-"""What a tree does from tick to tick: statuses, the nodes that were ticked, their feedback.
+"""Records a tree from tick to tick: statuses, ticked nodes and feedback.
 
-Looking at every node at every tick would cost a tenth of a match. A :class:`TreeWatch` looks
-only when the engine's :class:`~robobt.tree.engine.Marks` say that something may have changed;
-:class:`TreeChanges` works out later what did, for many ticks at once and for whoever asks.
+Checking every node in every tick would cost a tenth of a match. A :class:`TreeWatch` checks only when the
+engine's :class:`~robobt.tree.engine.Marks` report a possible change; :class:`TreeChanges` computes the
+changes later, for many ticks at once.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ _SILENT = (composites.Selector, composites.Sequence, composites.Parallel)
 
 @dataclass(slots=True)
 class TreeState:
-    """A tree as it was found changed.
+    """The state of a changed tree.
 
     Attributes:
         statuses: of every node, in the order of ``runner.nodes``; None when only feedback is new,
@@ -54,14 +54,14 @@ class TreeState:
 
 @dataclass(slots=True)
 class TreeChange:
-    """What is new in a state of a tree.
+    """The changes in a state of a tree.
 
     Attributes:
         statuses: one letter a node in the order of ``runner.nodes``: S, F, R of a node that was
             ticked, s, f, r where it kept the status of an earlier tick, - without a status;
             None when they are as they were.
         feedback: new feedback of nodes that have a status, by their place.
-        error: what the tree raised, when that is new.
+        error: the exception of the tree, if it is new.
     """
 
     statuses: str | None
@@ -85,7 +85,7 @@ class TreeWatches:
         self._begin()
 
     def replace(self, place: int, runner: TreeRunner) -> None:
-        """Look at another tree, of the same nodes, in place of one."""
+        """Watch another tree with equal nodes in place of one."""
         self.each[place] = TreeWatch(runner, self._news)
         self._begin()
 
@@ -100,7 +100,7 @@ class TreeWatches:
         self._usual = False
 
     def look(self) -> list[tuple[int, TreeState]]:
-        """Return the trees' states that may be others than at the last look, by their places."""
+        """Return the trees' states that may have changed since the last check, by place."""
         before, self._ticks = self._ticks, self._read()
         usual, self._usual = self._usual, not any(map(eq, before, self._ticks))
         places: Iterable[int]
@@ -115,7 +115,7 @@ class TreeWatches:
         return [(place, state) for place, state in states if state is not None]
 
     def look_again(self) -> None:
-        """Look at every node next time, for what one may have done to another one unseen."""
+        """Check every node next time, because a node may have changed another unnoticed."""
         for watch in self.each:
             watch.marks.change()
 

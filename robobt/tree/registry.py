@@ -1,4 +1,4 @@
-"""Things by name: skills, plays, raters, from this package and from others."""
+"""Registries by name: skills, plays, raters, from this package and others."""
 
 from __future__ import annotations
 
@@ -27,14 +27,13 @@ class Registry(Generic[T]):
     registry is first listed or asked for a name it does not know. What comes
     first keeps its name: the package's own things, then those of the
     distributions in alphabetical order. A distribution that cannot be loaded, or
-    claims a name that is taken, harms nobody else: what is wrong with it is in
-    :attr:`problems`. Inside :func:`~robobt.tree.namespace.within` things are entered in
-    that namespace, and found there first.
+    claims a name that is taken, does not affect the others: its error is in :attr:`problems`. Inside
+    :func:`~robobt.tree.namespace.within` objects are registered in that namespace, and found there first.
 
     Args:
-        kind: what it holds, for messages ("play").
+        kind: kind of its objects, for messages ("play").
         group: entry point group that other packages add to, None for none.
-        fits: whether something is of that kind; asked of other packages' entries.
+        fits: returns whether an object is of that kind; used for other packages' entries.
     """
 
     def __init__(
@@ -50,7 +49,7 @@ class Registry(Generic[T]):
         self._loading: str | None = None
 
     def register(self, name: str = "") -> Callable[[T], T]:
-        """Return a decorator that enters the decorated thing under ``name``.
+        """Return a decorator that registers the decorated object under ``name``.
 
         Raises:
             TypeError: there is no name, as in ``@register`` and ``@register()``.
@@ -146,7 +145,7 @@ class Registry(Generic[T]):
 
     def _load(self) -> None:
         if not self._loaded:
-            # Other packages' things are everybody's, whoever asks first.
+            # Other packages' objects are public, in every namespace.
             with within(None):
                 self._load_packages()
 

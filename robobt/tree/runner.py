@@ -1,4 +1,4 @@
-"""Ticks one robot's tree and keeps a fault in it from spreading."""
+"""Ticks one robot's tree and contains its errors."""
 
 from __future__ import annotations
 
@@ -22,28 +22,27 @@ _log = logging.getLogger(__name__)
 
 
 class TreeError(RobobtError, RuntimeError):
-    """A node raised: the message starts with its path, ``__cause__`` is what it raised."""
+    """A node raised: the message starts with its path, ``__cause__`` is the exception."""
 
 
 class TreeRunner:
     """A tree bound to one store, each of whose nodes has been set up once by its ``setup()``.
 
-    What a node raises fails it and stops this tree: running nodes are interrupted, the node has
-    FAILURE and the exception as its feedback, every other one INVALID, ``error`` says what
-    happened and where, and the next tick starts from the root again. Only what ends the
-    program (SystemExit, KeyboardInterrupt) goes on, with the tree at rest. A tree of which a node raised
-    in ``setup()`` fails at every tick for that reason.
+    An exception fails its node and stops this tree: running nodes are interrupted, the node has FAILURE and
+    the exception as its feedback, all others are INVALID, ``error`` has the exception and its place, and the
+    next tick starts from the root again. Only SystemExit and KeyboardInterrupt are passed on, with the tree
+    at rest. A tree of which a node raised in ``setup()`` fails at every tick for that reason.
 
     Args:
         root: the tree.
-        store: what its leaves work on.
-        on_error: what else an exception in a node does. "stop" logs it, for matches that
-            go on without this robot; "raise" raises :class:`TreeError`, for development.
+        store: the store of its leaves.
+        on_error: further effect of an exception in a node. "stop" logs it, for matches that continue without
+            this robot; "raise" raises :class:`TreeError`, for development.
 
     Attributes:
         nodes: every node in depth-first order, parents first; the order of :meth:`statuses`.
-        error: what the last tick raised, None when it went well.
-        ticks: how often the tree has been ticked.
+        error: the exception of the last tick, or None.
+        ticks: number of ticks.
 
     Raises:
         TreeError: the nodes are no tree, or one that is more than :data:`MAX_DEPTH` nodes deep.
@@ -83,7 +82,7 @@ class TreeRunner:
             if isinstance(error, SystemExit) and not isinstance(error, Terminated):
                 node, said = self._raiser(error)
                 _log.error("%s ends the program: %s", node_path(node), said)
-            # Whoever goes on after it finds a tree at rest.
+            # Code that continues after it finds a tree at rest.
             abandon(self.root)
             raise
         except BaseException as error:
@@ -121,7 +120,7 @@ class TreeRunner:
                 _log.warning("%s: %s", node_path(node), self._raiser(error)[1])
 
     def _fail(self, error: BaseException) -> None:
-        """Bring the tree to rest, with the node that raised as the one that failed."""
+        """Bring the tree to rest, with the node that raised marked as failed."""
         node, said = self._raiser(error)
         if self._unready is not None:
             said = f"setup() failed: {said}"
@@ -152,7 +151,7 @@ class TreeRunner:
         return self._marks
 
     def _renew(self) -> None:
-        """Compile the tree for whoever watches its nodes."""
+        """Compile the tree for the watchers of its nodes."""
         if self._unready is not None:
             self._tick = self._raise
             return
@@ -246,7 +245,7 @@ class TreeRunner:
         return node, f"{type(error).__name__}: {text_of(error)}{place}"
 
 
-# Where every exception passes through; whoever has to mend it looks elsewhere.
+# Every exception passes through here, so this frame does not help to find the error.
 _ENGINES = ("robobt.tree.", "py_trees.")
 
 

@@ -1,4 +1,4 @@
-"""Walks over the nodes of a tree, and ends even where a skill has made something else of the tree."""
+"""Walks over the nodes of a tree; they end even if a skill has broken the tree."""
 
 from __future__ import annotations
 

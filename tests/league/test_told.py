@@ -110,7 +110,7 @@ def test_a_simulator_that_dies_ends_the_match(caplog: pytest.LogCaptureFixture) 
         act(world, 2.0)
         (told,) = caplog.messages
         assert "for 1 s" in told
-        assert "told to stand" in told
+        assert "robots are stopped" in told
         with pytest.raises(LeagueError, match="for 4 s: start the simulator again"):
             act(world, 4.0)
 

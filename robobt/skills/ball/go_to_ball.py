@@ -158,7 +158,7 @@ class GoToBall(DrivingSkill):
 
 @POLICIES.register("geometric")
 class Geometric(Settings):
-    """Drive to a place beside the ball along the planned way, facing the ball."""
+    """Drive to the place beside the ball along the planned way, facing the ball."""
 
     arrival_speed: float = Field(0.5, ge=0, le=10, description="final speed, which the pick-up keeps [m/s]")
 

@@ -1,4 +1,4 @@
-"""Finds what is allowed in a tree but seldom meant."""
+"""Finds code in a tree that is allowed but rarely intended."""
 
 from __future__ import annotations
 

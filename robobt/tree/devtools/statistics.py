@@ -1,4 +1,4 @@
-"""Counts what each node of a tree does."""
+"""Counts the ticks, statuses and time of each node of a tree."""
 
 from __future__ import annotations
 
@@ -15,18 +15,18 @@ from robobt.tree.walk import node_path, preorder
 
 @dataclass(slots=True)
 class NodeCounts:
-    """What a node has done.
+    """The counts of one node.
 
     Attributes:
-        path: of the node.
-        ticks: how often it was ticked.
-        transitions: how often it came to another status than at its tick before.
-        successes, failures: how many of its ticks ended so.
-        runs: how many of its ticks left it running.
+        path: path of the node.
+        ticks: number of ticks.
+        transitions: number of ticks with another status than at the last tick. successes, failures: number of
+            ticks with this status.
+        runs: number of ticks after which it was running.
         last: the status of its last tick, None before the first.
-        own_time: time from the end of the node ticked before it to its own end, summed [s]: all
-            that a leaf took, and what a control node did after its last child.
-        time: the same with all that is below it [s].
+        own_time: total time from the end of the node ticked before it to its own end [s]: all the time of a
+            leaf, and the time of a control node after its last child.
+        time: its own time plus that of all nodes below it [s].
     """
 
     path: str
@@ -48,8 +48,8 @@ class NodeStatistics(VisitorBase):
 
     Args:
         root: the tree.
-        clock: what time is measured with [s]. The default also counts what else the machine does
-            meanwhile; ``time.thread_time`` does not, and takes as long as a small leaf.
+        clock: clock for measuring [s]. The default includes other work of the machine; ``time.thread_time``
+            does not, but takes as long as a small leaf.
     """
 
     def __init__(self, root: Behaviour, clock: Callable[[], float] = perf_counter) -> None:

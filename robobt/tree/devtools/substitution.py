@@ -1,4 +1,4 @@
-"""Replaces nodes of a built tree by leaves that follow a script, to test what is around them."""
+"""Replaces nodes of a built tree by leaves that follow a script, to test the rest of the tree."""
 
 from __future__ import annotations
 
@@ -47,10 +47,10 @@ class Substitution:
     """A rule: which nodes are replaced, and by what.
 
     Attributes:
-        pattern: of the nodes' paths, such as ``*/GoToBall``; ``*`` stands for any text,
+        pattern: pattern of the nodes' paths, such as ``*/GoToBall``; ``*`` stands for any text,
             slashes too, ``?`` and ``[...]`` as in file names; upper and lower case differ.
-        script: statuses that the leaf in their place returns, a tick each; the last one stays.
-        source, line: where the rule stands, for messages.
+        script: statuses that the replacing leaf returns, one per tick; the last one stays.
+        source, line: place of the rule, for messages.
     """
 
     pattern: str
@@ -84,12 +84,12 @@ def substitute(
 ) -> Behaviour:
     """Replace every node whose path matches a rule by a :class:`ScriptedLeaf` of its name.
 
-    The first rule that matches counts, and what is below a replaced node is gone with it.
-    To be called before the tree is bound to a store and ticked.
+    The first matching rule counts, and everything below a replaced node is removed. Call it before the tree
+    is bound to a store and ticked.
 
     Args:
         root: the tree; it is changed.
-        rules: as read or given; a path is that of a file of them.
+        rules: the rules, or the path of a file with rules.
 
     Returns:
         The tree's root, another one when the root itself was replaced.
@@ -103,7 +103,7 @@ def substitute(
         rules = substitutions(rules)
     chosen = list(rules)
     matched: set[int] = set()
-    # Chosen before anything is replaced, so that a broken rule leaves the tree as it was.
+    # Nodes are chosen before anything is replaced, so that a broken rule leaves the tree unchanged.
     picked = _choose(root, chosen, matched)
     for number, rule in enumerate(chosen):
         if number not in matched:

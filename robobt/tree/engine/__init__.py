@@ -1,4 +1,4 @@
-"""Ticks any py_trees tree without generators, many times faster, to the same effect.
+"""Ticks any py_trees tree without generators, many times faster, with the same effect.
 
 py_trees ticks by yielding every node through every level, builds log strings
 nobody reads, and makes a new generator at every stop. :func:`compile_tree` walks

@@ -1,4 +1,4 @@
-"""Closures that tick and stop a node, and what all makers of them share."""
+"""Closures that tick and stop a node, and the code shared by all their makers."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ class BringsClosures(Protocol):
     """A class with a ``tick`` of its own that offers closures in place of its generator."""
 
     def closures(self, visit: Visit | None) -> tuple[Tick, Stop]:
-        """Return functions that do to this node what its ``tick`` and its ``stop`` do.
+        """Return functions with the effect of this node's ``tick`` and ``stop``.
 
         Children are compiled by :func:`~robobt.tree.engine.dispatch.compile_node`. A subclass that
         overrides ``tick`` or ``stop`` without ``closures`` is ticked through its generator.
@@ -36,14 +36,13 @@ class BringsClosures(Protocol):
 class Marks:
     """A :data:`Visit` that is called for some nodes only, so that it costs no time for the others.
 
-    Which nodes a tick reaches and what they have afterwards follows from what the leaves
-    return, as long as every node on the way is of a known kind. So a tick at which each
-    leaf returned what it did when it was ticked last has left the tree as it was, but for
-    what nodes say.
+    The nodes that a tick reaches, and their statuses, follow from the leaves' return values if every node on
+    the way is of a known kind. So a tick in which each leaf returned the same as at its last tick leaves the
+    tree unchanged, except for feedback.
 
     Args:
         nodes: those.
-        tick: tells the number of the tick that goes on, or of the last one.
+        tick: returns the number of the present or last tick.
         news: marks are appended to this when there is something new in them, so that whoever looks at many
             trees finds those few of which there is; for its owner to clear.
 
@@ -78,22 +77,22 @@ class Marks:
         return self._seen if self._seen_at == self._tick() else []
 
     def of(self, node: Behaviour) -> Visit | None:
-        """Return what to call with this node; None when it is not asked for."""
+        """Return the function to call with this node, or None if it is not followed."""
         return self if id(node) in self._asked else None
 
     def change(self) -> None:
-        """Note that the tree may be another than before."""
+        """Note that the tree may have changed."""
         if not self.changed:
             self.changed = True
             self._news.append(self)
 
     def say(self, node: Behaviour) -> None:
-        """Note that a node gives other feedback than before."""
+        """Note that a node's feedback has changed."""
         self.feedback.append(node)
         self._news.append(self)
 
     def watched(self, node: Behaviour, tick: Tick) -> Tick:
-        """Return a node's tick, or update, that marks what it returns and says as far as that is new."""
+        """Return a node's tick, or update, that marks a new status or feedback."""
         last: Status | None = None
         said: str | None = None
 
@@ -123,12 +122,12 @@ class Marks:
 
 
 def marks_of(visit: Visit | None) -> Marks | None:
-    """Return the marks among the visits, None where others are asked for."""
+    """Return the marks among the visits, or None if there are other visits."""
     return visit if isinstance(visit, Marks) else None
 
 
 def shown(node: Behaviour, visit: Visit | None) -> Visit | None:
-    """Return what to call when this node has been ticked, None for nothing."""
+    """Return the function to call when this node has been ticked, or None."""
     return visit.of(node) if isinstance(visit, Marks) else visit
 
 

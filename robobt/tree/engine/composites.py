@@ -24,7 +24,7 @@ from robobt.tree.engine.plan import Plan, composite_stop, replan
 
 
 def sequence_closures(node: Sequence, visit: Visit | None) -> tuple[Tick, Stop]:
-    """Return what ``Sequence.tick`` and ``Sequence.stop`` do to a node."""
+    """Return closures with the effect of ``Sequence.tick`` and ``Sequence.stop``."""
     marks, show = marks_of(visit), shown(node, visit)
     initialise, terminate = own_method(node, "initialise"), own_method(node, "terminate")
     children: list[Behaviour] = []
@@ -87,7 +87,7 @@ def sequence_closures(node: Sequence, visit: Visit | None) -> tuple[Tick, Stop]:
 
 
 def selector_closures(node: Selector, visit: Visit | None) -> tuple[Tick, Stop]:
-    """Return what ``Selector.tick`` and ``Selector.stop`` do to a node."""
+    """Return closures with the effect of ``Selector.tick`` and ``Selector.stop``."""
     marks, show = marks_of(visit), shown(node, visit)
     initialise = own_method(node, "initialise")
     children: list[Behaviour] = []
@@ -128,7 +128,7 @@ def selector_closures(node: Selector, visit: Visit | None) -> tuple[Tick, Stop]:
             if status is RUNNING or status is SUCCESS:
                 node.current_child = child
                 if previous is not child:
-                    # The child that got its way interrupts whatever ran at a lower priority.
+                    # The child that was chosen interrupts any running child of lower priority.
                     for later in plan[children.index(child) + 1 :]:
                         if later.child.status is not INVALID:
                             later.stop(INVALID)
@@ -199,7 +199,7 @@ def _parallel(node: Parallel, visit: Visit | None) -> tuple[Tick, Stop]:
 
 
 def _parallel_status(node: Parallel, children: list[Behaviour], policy: ParallelPolicy.Base) -> Status:
-    """Return what a Parallel's children amount to; set ``current_child`` to the one that decided."""
+    """Return the status of a Parallel from its children; set ``current_child`` to the deciding child."""
     node.current_child = children[-1]
     for child in children:
         if child.status is FAILURE:

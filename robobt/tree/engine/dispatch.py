@@ -1,4 +1,4 @@
-"""Chooses how a node is ticked: by closures for its class, its own closures, or its generator."""
+"""Chooses how to tick a node: by closures for its class, its own closures, or its generator."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from robobt.tree.engine.closures import BringsClosures, Marks, Stop, Tick, Visit
 
 Make: TypeAlias = Callable[[Any, Visit | None], tuple[Tick, Stop]]
 Reach: TypeAlias = Literal["all", "first", "some"]
-"""Which children a tick of a node reaches, see :func:`~robobt.tree.engine.reach.ticked_children`."""
+"""The children that a tick of a node reaches, see :func:`~robobt.tree.engine.reach.ticked_children`."""
 
 
 _N = TypeVar("_N", bound=Behaviour)

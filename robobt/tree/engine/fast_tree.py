@@ -15,7 +15,7 @@ from robobt.tree.walk import name_of, postorder
 _log = logging.getLogger(__name__)
 
 LEAVING = (SystemExit, KeyboardInterrupt)
-"""What ends the program, on a signal too: it is never a node's failure."""
+"""Exceptions that end the program, also on a signal; they never count as a node's failure."""
 
 
 class FastTree(BehaviourTree):
@@ -49,7 +49,7 @@ class FastTree(BehaviourTree):
         try:
             self._compiled()
         except BaseException:
-            # Ctrl-C as well: whoever goes on after it finds a tree at rest.
+            # Ctrl-C too: code that continues after it finds a tree at rest.
             abandon(self.root)
             for visitor in self.visitors:
                 visitor.finalise()
@@ -83,8 +83,8 @@ def abandon(root: Behaviour) -> None:
         SystemExit, KeyboardInterrupt: one of them ended the program; all are at rest by then.
     """
     left: BaseException | None = None
-    # Children first, as composites stop; each is asked for itself, for a half-ticked
-    # parent does not know that its child runs.
+    # Children first, as composites stop; each is checked itself, because a half-ticked parent may not know
+    # that its child runs.
     for node in postorder(root):
         if getattr(node, "status", RUNNING) is RUNNING:
             try:

@@ -25,7 +25,7 @@ from robobt.tree.leaf import Leaf
 
 
 def leaf_closures(node: Behaviour, visit: Visit | None) -> tuple[Tick, Stop]:
-    """Return what ``Behaviour.tick`` and ``Behaviour.stop`` do to a leaf."""
+    """Return closures with the effect of ``Behaviour.tick`` and ``Behaviour.stop``."""
     initialise, update, terminate = lifecycle(node)
     marks, visit = marks_of(visit), shown(node, visit)
 
@@ -73,7 +73,7 @@ def _inherits(leaf: Behaviour, method: str) -> bool:
 
 
 def decorator_closures(node: Decorator, visit: Visit | None) -> tuple[Tick, Stop]:
-    """Return what ``Decorator.tick`` and ``Decorator.stop`` do to a node."""
+    """Return closures with the effect of ``Decorator.tick`` and ``Decorator.stop``."""
     marks, show = marks_of(visit), shown(node, visit)
     initialise, terminate = own_method(node, "initialise"), own_method(node, "terminate")
     decorated: Behaviour = node.decorated

@@ -1,4 +1,4 @@
-"""The children of a composite as its closures know them."""
+"""The plan of a composite: its children with their closures."""
 
 from __future__ import annotations
 
@@ -77,11 +77,11 @@ _LEAVES_AT: dict[object, tuple[tuple[Status, ...], Status]] = {
     Sequence.tick: ((FAILURE, RUNNING, INVALID), SUCCESS),
     Selector.tick: ((SUCCESS, RUNNING), FAILURE),
 }
-"""The statuses of a child upon which a composite goes no further, and what counts when none of them comes."""
+"""The statuses of a child at which a composite stops, and its own status if none of them occurs."""
 
 
 def composite_stop(node: Composite, visit: Visit | None, children: list[Behaviour], plan: Plan) -> Stop:
-    """Return what ``Composite.stop`` does; ``children`` and ``plan`` are those that :func:`replan` keeps."""
+    """Return a closure with the effect of ``Composite.stop``; :func:`replan` updates its arguments."""
     terminate = own_method(node, "terminate")
 
     def stop(status: Status) -> None:
@@ -100,7 +100,7 @@ def composite_stop(node: Composite, visit: Visit | None, children: list[Behaviou
 
 
 def replan(node: Composite, visit: Visit | None, children: list[Behaviour], plan: Plan) -> None:
-    """Bring a composite's closures up to its children; in place, for the closures share them."""
+    """Update a composite's closures for its children, in place because the closures share the plan."""
     known = {step.child.id: step for step in plan}
     if isinstance(visit, Marks):
         visit.change()

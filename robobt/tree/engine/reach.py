@@ -1,4 +1,4 @@
-"""Which children a tick of a node reaches, for those who read statuses after it."""
+"""The children that a tick of a node reaches, for reading statuses afterwards."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from robobt.tree.engine.dispatch import AS_IT_IS, Reach, known_as
 
 
 def ticked_children(node: Behaviour) -> Reach:
-    """Return which children a tick of this node reaches, as far as they have a status after it.
+    """Return which children a tick of this node reaches, among those with a status afterwards.
 
     "all": all of them. "first": those up to the first that succeeded or runs. "some":
     their statuses do not tell, for a child may keep that of an earlier tick, or one

@@ -1,4 +1,4 @@
-"""The tags of BehaviorTree.CPP and the nodes that do the same.
+"""The tags of BehaviorTree.CPP and the equivalent nodes.
 
 docs/tree_files.md has the table and lists where they differ in detail.
 """
@@ -37,7 +37,7 @@ class Tag:
 
     Attributes:
         type: the node's type.
-        fixed: parameters that the tag stands for.
+        fixed: parameters implied by the tag.
         attributes: the others, by the names XML gives them.
     """
 
@@ -108,7 +108,7 @@ UNKNOWN_HERE: Mapping[str, str] = {
         "robobt has no blackboard and no such node",
     ),
 }
-"""What to say about tags of BehaviorTree.CPP that cannot be read."""
+"""Messages about tags of BehaviorTree.CPP that cannot be read."""
 
 VERSION_3_TAGS: Mapping[str, str] = {
     "SubTreePlus": "it is SubTree",
@@ -120,7 +120,7 @@ VERSION_3_TAGS: Mapping[str, str] = {
     ),
     "ManualSelector": "there is none",
 }
-"""What became of tags of version 3 in version 4."""
+"""The names in version 4 of tags of version 3."""
 
 VERSION_3_ATTRIBUTES: Mapping[str, Mapping[str, str]] = {
     "SubTree": {
@@ -133,7 +133,7 @@ VERSION_3_ATTRIBUTES: Mapping[str, Mapping[str, str]] = {
         "threshold": "it is success_count",
     },
 }
-"""What became of attributes of version 3, by tag."""
+"""The names in version 4 of attributes of version 3, by tag."""
 
 NODE_TAGS = ("Action", "Condition", "Control", "Decorator")
 """Tags of the long form, in which the type is the attribute ``ID``."""

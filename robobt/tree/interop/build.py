@@ -50,11 +50,11 @@ def build_tree(file: TreeFile, vocabulary: Vocabulary, given: Mapping[str, Value
 
 @dataclass(slots=True)
 class _Scope:
-    """What names stand for in one tree.
+    """The values of names in one tree.
 
     Attributes:
         values: its parameters.
-        outside: where names that it does not know are looked up, None when nowhere.
+        outside: scope for looking up unknown names, or None.
     """
 
     values: dict[str, Value]
@@ -180,7 +180,7 @@ class _Builder:
         return self.vocabulary.convert(parameter, value)
 
     def _resolve(self, value: Value, scope: _Scope, line: int) -> Value:
-        """Return the value with every name in it replaced by what it stands for."""
+        """Return the value with every name in it replaced by its value."""
         if isinstance(value, Name):
             return self._find(value.name, scope, line)
         if isinstance(value, list):
@@ -217,7 +217,7 @@ class _Builder:
 
     @contextmanager
     def _at(self, line: int, what: str) -> Iterator[None]:
-        """Turn whatever a constructor or a play raises into an error at this line."""
+        """Turn any exception of a constructor or a play into an error at this line."""
         try:
             yield
         except (TreeFileError, RecursionError):
@@ -237,7 +237,7 @@ def _times(file: TreeFile) -> Counter[str]:
     inside = {
         name: Counter([spec.tree for spec in sub_trees(tree.root)]) for name, tree in file.trees.items()
     }
-    # Trees that others hold come after all of those, for no tree contains itself.
+    # Trees within others come after all of those, because no tree contains itself.
     order: dict[str, None] = {}
 
     def follow(name: str) -> None:

@@ -11,12 +11,12 @@ from robobt.tree.parameters import Parameter
 
 
 class TreeFileError(ConfigError):
-    """What is first wrong with a tree file, or a file of substitution rules."""
+    """The first error in a tree file, or in a file of substitution rules."""
 
 
 @dataclass(frozen=True, slots=True)
 class Entry:
-    """An entry of the store, given to a leaf in the place of a value.
+    """An entry of the store, given to a leaf in place of a value.
 
     A leaf with a parameter of a type like ``float | Entry`` can be wired to any
     entry: it reads or writes ``getattr(self.store, entry.entry)``.
@@ -94,7 +94,7 @@ class SubTree(_Placed):
 
 
 Spec: TypeAlias = "Node | SubTree"
-"""What may stand in the place of a node."""
+"""Elements allowed in place of a node."""
 
 
 @dataclass(slots=True)

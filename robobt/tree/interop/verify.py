@@ -28,9 +28,9 @@ from robobt.tree.registry import Registry
 def verify(file: TreeFile, vocabulary: Vocabulary) -> None:
     """Check every tree of a file.
 
-    Every type, tree and parameter that is named exists, all that is needed is
-    given, what is written out fits its type, and no tree contains itself. What
-    depends on the tree's parameters shows when it is built.
+    Every named type, tree and parameter must exist, all required values must be given, literal values must
+    fit their types, and no tree may contain itself. Values that depend on the tree's parameters are checked
+    when it is built.
     """
     verifier = _Verifier(file, vocabulary)
     verifier.check_cycles()
@@ -172,7 +172,7 @@ def sub_trees(spec: Spec) -> Iterator[SubTree]:
 
 
 def ports_of(definition: Definition, file: TreeFile, known: dict[str, set[str]] | None = None) -> set[str]:
-    """Return what a tree of an XML file can be given: what is declared, and the names it uses.
+    """Return the parameters that a tree of an XML file accepts: declared ones, and the names it uses.
 
     ``known`` has the ports of trees that have been looked at, and gets those of this one and of all it holds.
     """

@@ -1,4 +1,4 @@
-"""Which nodes and values a tree file may name, and how values are written in it."""
+"""The nodes and values that a tree file may name, and the notation of values."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ class Named(Protocol):
 
 @dataclass
 class Vocabulary:
-    """What tree files may name.
+    """The names that tree files may use.
 
     Control nodes are py_trees' and those of :mod:`robobt.tree.nodes`; they come
     before leaves of the same name.
@@ -62,7 +62,7 @@ class Vocabulary:
         """
         known = self._control.get(name)
         if known is None and name in self.leaves:
-            # By its class: what a name stands for may depend on who asks.
+            # By its class, because the meaning of a name may depend on the namespace.
             cls = self.leaves[name]
             known = self._types.get(cls)
             if known is None or known.name != name:
@@ -93,7 +93,7 @@ class Vocabulary:
         return parameter.convert(value)
 
     def from_text(self, parameter: Parameter, text: str) -> object:
-        """Return the plain data that a text stands for, as BehaviorTree.CPP writes values.
+        """Return the plain data of a text in BehaviorTree.CPP's notation.
 
         Tried in this order: the text itself; after ``json:``, JSON; JSON without
         that; ``true`` and ``false`` in any case, ``1`` and ``0`` for them; a list

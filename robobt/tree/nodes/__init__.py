@@ -1,4 +1,4 @@
-"""Control nodes where soccer needs more than py_trees has; docs/control_nodes.md describes what each does.
+"""Control nodes beyond those of py_trees; docs/control_nodes.md describes each.
 
 They are py_trees nodes like all others. Those with a time read it from the store
 they are bound to, never from the wall clock.

@@ -1,4 +1,4 @@
-"""Staying with a decision for a while: a reactive selector that keeps to its child."""
+"""Commitment to a decision for a while: a reactive selector that keeps its child."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ from robobt.tree.nodes.timer import HasTime, Timer
 class CommitFor(Decorator, Bound[HasTime]):
     """Marks a branch of a :class:`CommittingSelector` that is kept for a while once it runs.
 
-    It is the selector's child, or has only decorators between. Has its child's
-    status. Only higher priorities are held off: the child may finish at any time,
-    its own guards stop it as ever, and so does whatever is above the selector.
+    It is the selector's child, or has only decorators between. It returns its child's status. Only higher
+    priorities are held off: the child may finish at any time, and its own guards and nodes above the selector
+    stop it as usual.
 
     Args:
         seconds: how long, from the first tick of a run [s].
@@ -53,7 +53,7 @@ class CommitFor(Decorator, Bound[HasTime]):
 
 
 class CommittingSelector(Selector):
-    """A reactive selector that does not leave a branch which is committed.
+    """A reactive selector that does not leave a committed branch.
 
     While its running child is committed by a :class:`CommitFor`, that child is ticked
     first, and higher priorities only when it fails, in their order, before the lower

@@ -15,9 +15,9 @@ from robobt.tree.nodes.timer import HasTime, Timer
 class Cooldown(Gate, Bound[HasTime]):
     """FAILURE, without ticking its child, for a while after the child has finished.
 
-    For what should not be tried again at once: a pass that has just failed, a kick
-    that has just been taken. An interrupted child has not finished and may go on
-    whenever its turn comes; being interrupted does not shorten the pause either.
+    Use it for actions that should not be retried at once: a pass that has just failed, a kick that has just
+    been taken. An interrupted child has not finished and may continue at its next tick; an interruption does
+    not shorten the pause either.
 
     Args:
         seconds: length of the pause, from the tick at which the child finished [s].

@@ -1,4 +1,4 @@
-"""The base of decorators that answer for their child at times."""
+"""The base of decorators that sometimes return their own status without ticking the child."""
 
 from __future__ import annotations
 
@@ -14,11 +14,10 @@ from robobt.tree.engine import Stop, Tick, Visit, compile_node, not_a_status, ow
 class Gate(Decorator):
     """A decorator that decides at every tick whether its child is ticked.
 
-    Override :meth:`answer`, and :meth:`update` to make something of the child's
-    status. When the gate answers with a final status the child does not keep
-    one of its own: a running child is interrupted, a finished one becomes INVALID.
-    So a child that shows a final status was ticked. When the gate answers RUNNING,
-    a running child goes on running, unticked.
+    Override :meth:`answer`, and :meth:`update` to change the child's status. When the gate returns a final
+    status, the child does not keep its own: a running child is interrupted, a finished one becomes INVALID.
+    So a child with a final status was ticked. When the gate returns RUNNING, a running child stays running
+    without a tick.
     """
 
     def answer(self) -> Status | None:

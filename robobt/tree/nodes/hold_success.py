@@ -1,4 +1,4 @@
-"""Decorator: an answer that is not asked again at once."""
+"""Decorator: holds its child's success for a while."""
 
 from __future__ import annotations
 
@@ -13,10 +13,9 @@ from robobt.tree.nodes.timer import HasTime, Timer
 class HoldSuccess(Gate, Bound[HasTime]):
     """SUCCESS, without ticking its child, for a while after the child has succeeded.
 
-    Around a guard in a reactive sequence it commits the robot to what the guard
-    guards: a shot that was found open counts as open for the next 0.3 s, and what
-    the guard has written into the store stays as it was. Failure is not held: the
-    guard is asked at every tick until it succeeds.
+    Around a guard in a reactive sequence it commits the robot to the guarded action: an open shot counts as
+    open for the next 0.3 s, and the guard's entries in the store stay unchanged. Failure is not held: the
+    guard is ticked in every tick until it succeeds.
 
     To keep higher priorities from interrupting a branch, see
     :class:`~robobt.tree.nodes.commit_for.CommitFor`.

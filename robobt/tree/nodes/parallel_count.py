@@ -1,4 +1,4 @@
-"""Composite: as many successes or failures as it takes."""
+"""Composite: ends at a number of successes or failures."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Composite: steps that are done are not done again."""
+"""Composite: a sequence that does not repeat finished steps."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Decorator: a child that need not be ticked every time."""
+"""Decorator: ticks its child less often."""
 
 from __future__ import annotations
 
@@ -13,9 +13,8 @@ from robobt.tree.nodes.timer import HasTime, Timer
 class TickDivider(Gate, Bound[HasTime]):
     """Ticks its child less often and repeats the child's last status in between.
 
-    For what costs much and changes slowly, such as rating every shot. Not for
-    skills that move the robot: commands are not repeated, so between its ticks the
-    robot would stand.
+    Use it for costly work that changes slowly, such as rating every shot. Do not use it for skills that move
+    the robot: commands are not repeated, so the robot would stand between ticks.
 
     The first tick reaches the child, and so does the first one after a running
     child was interrupted. Ticks are those that reach this node, so with ``every``

@@ -19,8 +19,8 @@ class HasTime(Protocol):
 class Timer:
     """Runs for a while once started, on a clock that its caller reads.
 
-    A clock that has gone backwards (a new match on an old tree) ends it, so that
-    nothing waits for a time that is long past.
+    A clock that has gone backwards (a new match on an old tree) ends it, so that no node waits for an old
+    time.
 
     Raises:
         ValueError: not a finite number of 0 or more seconds.
