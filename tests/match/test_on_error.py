@@ -30,10 +30,10 @@ def test_by_default_the_match_goes_on_without_the_robot() -> None:
 
 
 def test_a_tree_that_fails_at_every_tick_for_one_reason_is_told() -> None:
-    run = run_trials(breaking("fail"), PlainWorld, 2)
+    run = run_trials_in(breaking("fail"), PlainWorld, 2)
     assert run.results[0].robots["blue 0"].always_failed == "Scripted: cannot"
     assert run.summary().robots["blue 0"].always_failed == "Scripted: cannot"
-    (other,) = run_trials(breaking("fail once"), PlainWorld, 1).results
+    (other,) = run_trials_in(breaking("fail once"), PlainWorld, 1).results
     assert other.robots["blue 0"].always_failed is None
 
 
