@@ -159,7 +159,7 @@ class Live:
     def count_down(self, match: MatchLoop, seconds: float) -> None:
         """Show the start of ``match`` and count down ``seconds`` once somebody is there to drive.
 
-        It begins anew whenever nobody is.
+        It starts over whenever nobody is.
         """
         assert self._hands is not None
         assert self._stream is not None
