@@ -1,4 +1,4 @@
-"""``python -m paper``: the tables of the paper, its figures beside ours."""
+"""``python -m paper``: the tables of the paper, its figures beside ours, and what they rest on."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ _COMMANDS = {
     "table3": "shot_tables:table3",
     "table4": "table4:table4",
     "deployed": "deployed:deployed",
+    "goalkeepers": "goalkeepers:goalkeepers",
 }
 """The commands by name, each a function of a module in ``commands``."""
 

@@ -52,11 +52,10 @@ _GROUPS = {
     ),
     "collect": ("Collect data from simulated play.", {"shots": "collect:shots"}),
     "shots": (
-        "Predictors of shots: train them, judge them, draw their map; fit goalkeepers to recorded shots.",
+        "Predictors of shots: train them, judge them, draw their map.",
         {
             "train": "shots:train",
             "score": "shots:score",
-            "goalkeepers": "goalkeepers:goalkeepers",
             "map": "shots:draw",
         },
     ),

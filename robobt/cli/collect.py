@@ -56,7 +56,7 @@ def shots(
         typer.Option(
             "--goalkeepers",
             help="own: ours, at half and at full speed; real: drawn from those fitted to the paper's real "
-            "shots; or a file of 'robobt shots goalkeepers'.",
+            "shots; or a file of 'python -m paper goalkeepers'.",
         ),
     ] = "own",
     workers: Workers = None,

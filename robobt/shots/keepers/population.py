@@ -16,7 +16,7 @@ from robobt.world.compiled import record_dtype
 from robobt.world.geometry import FloatArray
 
 REAL = Path(__file__).with_name("real.yaml")
-"""The population fitted to the paper's 542 real training shots by ``robobt shots goalkeepers``."""
+"""The population fitted to the paper's 542 real training shots by ``python -m paper goalkeepers``."""
 
 
 class Traits(NamedTuple):

@@ -1,8 +1,8 @@
 import numpy as np
 import pytest
 
-from robobt.shots.keepers.fit import START, chances, fit_population
-from robobt.shots.keepers.race import race_inputs
+from paper.goalkeeper_fit import START, chances, fit_population
+from paper.goalkeeper_race import race_inputs
 from robobt.shots.predict.validation import judge
 from tests.shots.made_up import made_up_table
 

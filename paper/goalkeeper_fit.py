@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.stats import norm, qmc
 
+from paper.goalkeeper_race import GOAL_LINE, goal_chances
 from robobt.shots.keepers.population import DIMENSIONS, Population
-from robobt.shots.keepers.race import GOAL_LINE, goal_chances
 from robobt.shots.predict.validation import Fold
 from robobt.world.geometry import FloatArray
 
@@ -50,7 +50,7 @@ _LEAST = 0.002
 def chances(population: Population, shots: FloatArray, draws: int = DRAWS) -> FloatArray:
     """Return the probability of a goal (n,) of shots (n, 8) against a population.
 
-    ``shots`` are :func:`~robobt.shots.keepers.race.race_inputs`, ``draws`` is a power of 2; the same
+    ``shots`` are :func:`~paper.goalkeeper_race.race_inputs`, ``draws`` is a power of 2; the same
     goalkeepers are drawn each time.
     """
     normal = norm.ppf(qmc.Sobol(DIMENSIONS, seed=1).random(draws))

@@ -1,10 +1,10 @@
 import numpy as np
 import pytest
 
+from paper.goalkeeper_fit import START, chances
+from paper.goalkeeper_race import race_inputs
 from robobt.shots.data import goals, read_shots
-from robobt.shots.keepers.fit import START, chances
 from robobt.shots.keepers.population import REAL, read_population
-from robobt.shots.keepers.race import race_inputs
 from robobt.shots.predict.validation import judge
 from tests.shots.made_up import made_up_table
 from tests.shots.real_data import REAL_SHOTS, needs_real_shots

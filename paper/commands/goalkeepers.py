@@ -1,4 +1,4 @@
-"""``robobt shots goalkeepers``: the goalkeepers behind recorded shots."""
+"""``python -m paper goalkeepers``: the goalkeepers behind recorded shots."""
 
 from __future__ import annotations
 
@@ -25,17 +25,17 @@ def goalkeepers(
 ) -> None:
     """Fit a population of goalkeepers to recorded shots, for 'robobt collect shots --goalkeepers'.
 
-    Each shot is run again from where everybody was at the kick, as a race of ball and
-    goalkeeper; the population that makes the outcomes likeliest is found, and how it predicts
-    shots that it was not fitted to is told. Of the author's shots only those to train on are used.
+    Each shot is played again from where everybody was at the kick, as a race of ball and goalkeeper.
+    The population that makes the recorded outcomes likeliest is printed, with how well it predicts shots
+    that it was not fitted to. Of the author's shots only the training set is used.
 
     Keys of --json: population, shots, base_rate, predicted, figures (accuracy, log_loss,
     calibration_error), by_distance and by_angle (low, high, shots, goals, predicted).
     """
     from dataclasses import asdict
 
+    from paper.goalkeepers import explain, shots_to_fit
     from robobt.shots.data.problems import ShotDataError
-    from robobt.shots.keepers.explain import explain, shots_to_fit
     from robobt.shots.predict.validation import FOLDS
 
     if out is not None and out.exists() and not force:

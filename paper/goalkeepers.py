@@ -11,13 +11,13 @@ import numpy as np
 import pyarrow as pa
 from numpy.typing import NDArray
 
+from paper.goalkeeper_fit import fit_population, validate_population
+from paper.goalkeeper_race import race_inputs
 from robobt.models.card import Measured
 from robobt.shots.data.files import read_shots
 from robobt.shots.data.inputs import goals
 from robobt.shots.data.problems import ShotDataError
-from robobt.shots.keepers.fit import fit_population, validate_population
 from robobt.shots.keepers.population import Population
-from robobt.shots.keepers.race import race_inputs
 from robobt.shots.predict.score import measured
 from robobt.shots.predict.shot_sets import load_shot_sets
 from robobt.shots.predict.validation import FOLDS, stratified_folds
