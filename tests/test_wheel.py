@@ -89,7 +89,7 @@ def test_it_plays_and_loads_its_models_where_nothing_else_is_installed(
     assert 'pip install "robobt[record]"' in refused.stderr
     assert clean.size() < 350e6
 
-    said = json.loads(clean.run("robobt", "models", "--json").stdout)
+    said = json.loads(clean.run("robobt", "list", "models", "--json").stdout)
     listed = said["models"]
     assert said["problems"] == []
     assert {model["card"]["name"] for model in listed} == {path.stem for path in ROOT.glob("models/*.pt")}

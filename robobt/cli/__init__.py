@@ -7,7 +7,6 @@ is imported by the command that needs it, so that ``robobt --help`` is quick.
 from __future__ import annotations
 
 import gc
-import shlex
 import sys
 from collections.abc import Callable, Mapping
 from importlib import import_module
@@ -15,55 +14,57 @@ from io import TextIOWrapper
 from typing import Annotated
 
 import typer
+from rich.markup import escape
 
 from robobt.cli.common import console, errors, one_line_errors
 from robobt.cli.groups import spread
+from robobt.cli.moved import what_became
+from robobt.cli.options import option
 from robobt.config.telling import tell_warnings
 from robobt.signals import leave_after_signal
 
 _COMMANDS = {
-    "match": "match:match",
-    "live": "live:live",
-    "compare": "compare:compare",
-    "tournament": "tournament.tournament:tournament",
-    "sweep": "tournament.sweep:sweep",
-    "results": "tournament.results:results",
-    "replay": "replay:replay",
-    "scenarios": "scenarios:scenarios",
-    "plays": "lists:plays",
-    "skills": "lists:skills",
-    "raters": "lists:raters",
-    "policies": "lists:policies",
-    "tree": "tree:tree",
-    "train": "train:train",
-    "demonstrations": "train:demonstrations",
-    "rate": "rate:rate",
-    "export": "export:export",
-    "models": "export:models",
-    "serve": "league:serve",
-    "log": "league:log_packets",
+    "match": ("match:match", "Play a scenario and count goals; --live shows it."),
+    "compare": ("compare:compare", "Compare variants of a scenario, trial by trial."),
+    "list": ("list_:list_", "List plays, skills, models, scenarios and more."),
+    "show": ("show:show", "Show a play, scenario, model or recording."),
+    "train": ("train:train", "Train a skill by reinforcement learning."),
+    "evaluate": ("evaluate:evaluate", "Judge trained policies on fresh starts."),
+    "export": ("export:export", "Write a trained policy as a model file."),
+    "serve": ("league:serve", "Serve a simulated field to other software."),
+    "log": ("league:log_packets", "Write a log of a field's network traffic."),
 }
-"""The commands by name, each a function of a module here, in the order of ``robobt --help``."""
+"""The commands by name: a function of a module here, and what the list of commands says of it."""
 
 _GROUPS = {
-    "record": (
-        "Use recordings: what the teams did, in other tools, in tests.",
-        {"export": "record:export", "case": "record:case", "statistics": "record:statistics"},
-    ),
-    "collect": ("Collect data from simulated play.", {"shots": "collect:shots"}),
-    "shots": (
-        "Predictors of shots: train them, judge them, draw their map.",
+    "tournament": (
+        "Let teams play each other, and rate them.",
         {
-            "train": "shots:train",
-            "score": "shots:score",
-            "map": "shots:draw",
+            "run": ("tournament.tournament:run", "Let teams play each other, and rate them."),
+            "results": ("tournament.results:results", "Sum up, compare and merge what was played."),
+            "sweep": ("tournament.sweep:sweep", "Tune the parameters of a play."),
+        },
+    ),
+    "record": (
+        "Use recordings, and make demonstrations.",
+        {
+            "export": ("record:export", "Write a recording for other tools."),
+            "case": ("record:case", "Save a tick as a regression case."),
+            "statistics": ("record:statistics", "Count goals, passes, fouls and more."),
+            "demonstrations": ("record:demonstrations", "Record a script or skill doing a task."),
+        },
+    ),
+    "shots": (
+        "Collect shots; train and judge predictors of goals.",
+        {
+            "collect": ("collect:collect", "Play, and record one row a shot."),
+            "train": ("shots:train", "Train a shot predictor."),
+            "score": ("shots:score", "Judge a shot predictor on recorded shots."),
+            "map": ("shots:draw", "Draw the probability of a goal over the field."),
         },
     ),
 }
 """The groups of commands, each with its help and its commands."""
-
-_MOVED = {"bench": "python -m benchmarks", "paper": "python -m paper"}
-"""Commands that are run from a clone of the repository now, and how."""
 
 app: typer.Typer
 """The whole of it, made when it is first used."""
@@ -94,17 +95,9 @@ def _run_on(context: typer.Context, address: str) -> None:
 
 def global_options(
     context: typer.Context,
-    engine: Annotated[
-        str,
-        typer.Option(
-            help="Where commands with --workers run them: local (processes of this machine), ray, or "
-            "ray://HOST:PORT.",
-        ),
-    ] = "local",
-    debug: Annotated[bool, typer.Option("--debug", hidden=True, help="Show tracebacks.")] = False,
-    _shown: Annotated[
-        bool, typer.Option("--version", callback=_version, is_eager=True, help="Print the version.")
-    ] = False,
+    engine: Annotated[str, option("--engine")] = "local",
+    debug: Annotated[bool, option("--debug")] = False,
+    _shown: Annotated[bool, option("--version", callback=_version, is_eager=True)] = False,
 ) -> None:
     """Do what the options say that stand before a command."""
     tell_warnings(debug)
@@ -116,32 +109,25 @@ def global_options(
         one_line_errors(_run_on)(context, engine)
 
 
-def add_commands(group: typer.Typer, commands: Mapping[str, str], package: str = "robobt.cli") -> None:
-    """Give an application commands: by name, each a "module:function" of the package."""
-    for name, place in commands.items():
+def add_commands(
+    group: typer.Typer, commands: Mapping[str, str | tuple[str, str]], package: str = "robobt.cli"
+) -> None:
+    """Give an application commands by name: each a "module:function" of the package, and its summary."""
+    for name, given in commands.items():
+        place, summary = (given, None) if isinstance(given, str) else given
         module, _, function = place.partition(":")
         command = getattr(import_module(f"{package}.{module}"), function)
-        group.command(name)(one_line_errors(spread(command)))
-
-
-def _moved(name: str, now: str) -> Callable[[typer.Context], None]:
-    def say_so(context: typer.Context) -> None:
-        asked = shlex.join(context.args) or "--help"
-        errors.print(
-            f"robobt {name} has moved: in a clone of the repository run {now} {asked}", soft_wrap=True
-        )
-        raise typer.Exit(2)
-
-    return say_so
+        group.command(name, short_help=summary)(one_line_errors(spread(command)))
 
 
 def application(only: str | None = None) -> typer.Typer:
     """Make the application; of one command or group alone where that is all that is asked for."""
-    known = only in _COMMANDS or only in _GROUPS or only in _MOVED
+    known = only in _COMMANDS or only in _GROUPS
     made = typer.Typer(
         no_args_is_help=True,
         add_completion=not known,
         pretty_exceptions_enable=False,
+        rich_markup_mode=None,
         help="Behaviour trees for robot soccer: play scenarios, look at plays and skills, measure.",
     )
     made.callback()(global_options)
@@ -153,17 +139,14 @@ def application(only: str | None = None) -> typer.Typer:
             group.callback()(lambda: None)
             add_commands(group, commands)
             made.add_typer(group, name=name)
-    anything = {"ignore_unknown_options": True, "allow_extra_args": True}
-    for name, now in _MOVED.items():
-        if name == only or not known:
-            made.command(name, hidden=True, add_help_option=False, context_settings=anything)(
-                _moved(name, now)
-            )
     return made
 
 
 def main() -> None:
     """Run the command ``robobt``."""
+    if (became := what_became(sys.argv[1:])) is not None:
+        errors.print(escape(became), soft_wrap=True)
+        raise SystemExit(2)
     run(application, "robobt")
 
 
@@ -171,9 +154,11 @@ def run(make: Callable[[str | None], typer.Typer], name: str) -> None:
     """Run an application as a program of this name; ``make`` is given the first word of the command line."""
     # What a start imports stays; looking through its 270,000 objects for garbage took an eighth of the start.
     gc.set_threshold(400_000, *gc.get_threshold()[1:])
+    words = [word for word in sys.argv[1:] if word != "--debug"]
+    debug = ["--debug"] if len(words) < len(sys.argv) - 1 else []
     try:
         # To make all commands takes as long as many a command itself.
-        make(sys.argv[1] if len(sys.argv) > 1 else None)(prog_name=name)
+        make(words[0] if words else None)([*debug, *words], prog_name=name)
     except SystemExit as end:
         leave_after_signal(end.code)
         raise

@@ -1,4 +1,4 @@
-"""``robobt collect``: shots for the predictors to learn from."""
+"""``robobt shots collect``: shots for the predictors to learn from."""
 
 from __future__ import annotations
 
@@ -9,10 +9,11 @@ from typing import Annotated
 import typer
 
 from robobt.cli.common import MAX_SEED, Json, Progress, Workers, cores, errors, print_json, say
+from robobt.cli.options import option
 from robobt.cli.outputs import make_folders
 
 
-class Scenario(StrEnum):
+class Attack(StrEnum):
     """How the attacker comes to shoot."""
 
     MOTION = "motion"
@@ -27,43 +28,33 @@ class Protocol(StrEnum):
     PAPER = "paper"
 
 
-def shots(
+def collect(
     count: Annotated[
-        int | None,
-        typer.Option(
-            "--count", "-n", min=1, max=10_000_000, help="How many shots; 1000, the paper's protocol 743."
-        ),
+        int | None, option("--count", "; by default 1000, the paper's protocol 743", min=1, max=10_000_000)
     ] = None,
-    scenario: Annotated[
-        Scenario, typer.Option("--scenario", help="On the move, standing, or both in turn.")
-    ] = Scenario.BOTH,
+    attack: Annotated[Attack, option("--attack")] = Attack.BOTH,
     protocol: Annotated[
         Protocol,
-        typer.Option(
+        option(
             "--protocol",
-            help="balanced: evenly over range, angle and goalkeeper offset, at any point of the goal; "
-            "paper: those that Attack Main takes, 542 to train and 201 to test.",
+            ": balanced ones, evenly over range, angle and goalkeeper offset, at any point of the goal; or "
+            "the paper's, those that Attack Main takes, 542 to train and 201 to test",
         ),
     ] = Protocol.BALANCED,
     opponents: Annotated[
-        int,
-        typer.Option(
-            "--opponents", min=1, max=6, help="Most opponents; half the shots have the keeper alone."
-        ),
+        int, option("--opponents", "; half of the shots face the goalkeeper alone", min=1, max=6)
     ] = 1,
     goalkeepers: Annotated[
         str,
-        typer.Option(
+        option(
             "--goalkeepers",
-            help="own: ours, at half and at full speed; real: drawn from those fitted to the paper's real "
-            "shots; or a file of 'python -m paper goalkeepers'.",
+            ": own is ours, at half and at full speed; real are those fitted to the paper's real shots; or a "
+            "file of 'python -m paper goalkeepers'",
         ),
     ] = "own",
     workers: Workers = None,
-    seed: Annotated[
-        int, typer.Option("--seed", "-s", min=0, max=MAX_SEED, help="What all randomness follows from.")
-    ] = 1,
-    out: Annotated[Path, typer.Option("--out", "-o", help="The file, .parquet or .csv.")] = Path(
+    seed: Annotated[int, option("--seed", min=0, max=MAX_SEED)] = 1,
+    out: Annotated[Path, option("--out", " the shots (.parquet or .csv)", metavar="FILE")] = Path(
         "shots.parquet"
     ),
     as_json: Json = False,
@@ -71,7 +62,7 @@ def shots(
     """Play the paper's collection scenarios and write one row a shot, as the kick goes out.
 
     A collection that is stopped, in whatever way, keeps every finished shot; the
-    same command goes on with it. The same settings give the same shots with any
+    same command continues it. The same settings give the same shots with any
     number of workers. Beside the file lies a description of its columns (.json).
 
     Keys of --json: out, shots, goals, success_rate, new, simulated_s, wall_s,
@@ -85,7 +76,7 @@ def shots(
     if goalkeepers != "own":
         population = read_population(REAL if goalkeepers == "real" else Path(goalkeepers))
     settings = CollectionSettings(
-        scenario=scenario.value,
+        scenario=attack.value,
         protocol=protocol.value,
         opponents=opponents,
         seed=seed,
@@ -115,5 +106,5 @@ def shots(
             f"new{speed}, in {out}."
         )
     if done.interrupted:
-        errors.print("stopped; the same command goes on with it", soft_wrap=True)
+        errors.print("stopped; the same command continues it", soft_wrap=True)
         raise typer.Exit(130)

@@ -22,6 +22,7 @@ import typer
 from rich.markup import escape
 from rich.table import Column, Table
 
+from robobt.cli.options import option
 from robobt.cli.screen import console as console
 from robobt.cli.screen import errors as errors
 from robobt.config.errors import ConfigError, RobobtError, unknown_name
@@ -33,41 +34,22 @@ if TYPE_CHECKING:
     from robobt.tree.registry import Registry
 
 
-Json = Annotated[bool, typer.Option("--json", help="Print one JSON object instead of tables.")]
+Json = Annotated[bool, option("--json")]
 """The option of every command that can print its figures for another program."""
 
-Imports = Annotated[
-    list[Path] | None,
-    typer.Option(
-        "--import",
-        help="A Python file of your own, for the plays, skills and raters it registers; may be given often.",
-    ),
-]
+Imports = Annotated[list[Path] | None, option("--import")]
 """The option of every command that knows plays or skills by name; see ``import_files``."""
 
 MAX_SEED = 2**53 - 1
 """The largest seed that JSON keeps exactly."""
 
-Seed = Annotated[
-    int | None,
-    typer.Option(
-        "--seed", "-s", min=0, max=MAX_SEED, help="Seed of all randomness; by default the scenario's."
-    ),
-]
+Seed = Annotated[int | None, option("--seed", "; by default the scenario's", min=0, max=MAX_SEED)]
 """The option of commands that play a scenario with its seed or another."""
 
-Workers = Annotated[
-    int | None,
-    typer.Option("--workers", "-w", min=1, max=256, help="Worker processes; by default one a core."),
-]
+Workers = Annotated[int | None, option("--workers", min=1, max=256)]
 """The option of commands that share their work among processes."""
 
-Where = Annotated[
-    str,
-    typer.Option(
-        "--world", help="Where to play: sim, or a field of the league like league://grsim (one worker)."
-    ),
-]
+Where = Annotated[str, option("--world")]
 """The option of every command that can play elsewhere; see ``world_of``."""
 
 

@@ -29,8 +29,9 @@ from robobt.cli.common import (
     warn,
     world_of,
 )
+from robobt.cli.options import option
 from robobt.cli.outputs import make_folders
-from robobt.cli.scenario_options import PLAY, TEAM_HELP, Set, scenario_of, with_teams
+from robobt.cli.scenario_options import Set, scenario_of, with_teams
 
 if TYPE_CHECKING:
     from robobt.match import MatchResult, Scenario
@@ -41,12 +42,9 @@ if TYPE_CHECKING:
 class Variants:
     """What is compared."""
 
-    blue: Annotated[list[str] | None, typer.Option("--blue", metavar=PLAY, help=TEAM_HELP)] = None
-    yellow: Annotated[list[str] | None, typer.Option("--yellow", metavar=PLAY, help=TEAM_HELP)] = None
-    world: Annotated[
-        list[str] | None,
-        typer.Option("--world", help="Where to play: sim, or a field of the league like league://grsim."),
-    ] = None
+    blue: Annotated[list[str] | None, option("--blue", "; repeat it to compare")] = None
+    yellow: Annotated[list[str] | None, option("--yellow", "; repeat it to compare")] = None
+    world: Annotated[list[str] | None, option("--world", "; repeat it to compare")] = None
 
     def of(self, base: Scenario) -> dict[str, tuple[Scenario, str]]:
         """Return every combination by a label of what differs."""
@@ -68,17 +66,16 @@ def compare(
     settings: Set = None,
     trials: Annotated[
         int | None,
-        typer.Option(
-            "--trials", "-n", min=1, max=100_000, help="Trials a variant; by default the scenario's."
-        ),
+        option("--trials", " with each variant; by default the scenario's number", min=1, max=100_000),
     ] = None,
     seed: Seed = None,
     workers: Workers = None,
     out: Annotated[
         Path | None,
-        typer.Option(
+        option(
             "--out",
-            help="Keep every trial's result in files of this folder; a stopped run goes on from there.",
+            " every trial's result; the same command continues a run that was stopped",
+            metavar="FOLDER",
         ),
     ] = None,
     imports: Imports = None,

@@ -4,16 +4,10 @@ from __future__ import annotations
 
 from typing import Annotated
 
-import typer
+from robobt.cli.options import option
 
 Layers = Annotated[
-    str,
-    typer.Option(
-        "--record-layers",
-        metavar="NAMES",
-        help="Record what skills draw in these layers as well: names separated by commas, as in "
-        "'paths, targets, observation'.",
-    ),
+    str, option("--record-layers", ": names separated by commas, as in 'paths, targets, observation'")
 ]
 
 

@@ -6,14 +6,16 @@ import time
 from contextlib import ExitStack, suppress
 from dataclasses import asdict, dataclass
 from enum import StrEnum
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from robobt.cli.common import MAX_SEED, Json, print_json, say, warn
-from robobt.cli.live import Page
+from robobt.cli.options import option
 from robobt.cli.outputs import make_folders
+from robobt.cli.page import Page
 from robobt.config.errors import unknown_name
 from robobt.signals import Terminated
 
@@ -24,6 +26,19 @@ if TYPE_CHECKING:
     from robobt.match.referee.settings import RefereeSettings
 
 
+VISION, TRACKER, REFEREE = "224.5.23.2:10020", "224.5.23.2:10010", "224.5.23.1:10003"
+"""Where the league's programs send and listen by default; on a real field the vision's port is 10006."""
+
+_port = partial(option, min=0, max=65535, show_default=True)
+
+
+class Referee(StrEnum):
+    """Who referees a field that is served."""
+
+    OWN = "own"
+    NONE = "none"
+
+
 class Clock(StrEnum):
     """What timestamps count from."""
 
@@ -31,34 +46,15 @@ class Clock(StrEnum):
     UNIX = "unix"
 
 
-def _port(name: str, what: str) -> typer.models.OptionInfo:
-    option: typer.models.OptionInfo = typer.Option(
-        f"--{name}-port", min=0, max=65535, help=what, show_default=True
-    )
-    return option
-
-
 @dataclass(frozen=True)
 class LineUp:
     """What stands on the field that is served."""
 
-    robots: Annotated[
-        int, typer.Option("--robots", min=0, max=16, help="Robots on each team, without a scenario.")
-    ] = 6
-    field: Annotated[str, typer.Option("--field", help="division_a or division_b, without a scenario.")] = (
-        "division_b"
-    )
-    preset: Annotated[
-        str | None,
-        typer.Option("--preset", help="The simulator's preset; by default the scenario's, or grsim."),
-    ] = None
-    realism: Annotated[
-        str | None,
-        typer.Option("--realism", help="none, friendly, rc2021 or realistic; by default the preset's."),
-    ] = None
-    referee: Annotated[
-        bool, typer.Option("--referee", help="Referee the match, and publish the referee's messages.")
-    ] = False
+    robots: Annotated[int, option("--robots", ", without a scenario", min=0, max=16)] = 6
+    field: Annotated[str, option("--field", ", without a scenario")] = "division_b"
+    simulator: Annotated[str | None, option("--simulator", "; by default the scenario's, or grsim")] = None
+    realism: Annotated[str | None, option("--realism", "; by default the preset's")] = None
+    referee: Annotated[Referee, option("--referee", ", whose messages are published")] = Referee.NONE
 
     def served(self, scenario: str | None, seed: int) -> tuple[ServedField, RefereeSettings | None]:
         """Return the field to serve, and a referee's settings where there is to be one."""
@@ -67,62 +63,44 @@ class LineUp:
         from robobt.match.referee.settings import RefereeSettings
         from robobt.world import FIELDS
 
-        rules = RefereeSettings() if self.referee else None
+        rules = RefereeSettings() if self.referee is Referee.OWN else None
         if scenario is None:
             if self.field not in FIELDS:
                 there = f"there is no field {self.field!r}; {unknown_name(self.field, FIELDS)}"
                 raise typer.BadParameter(there, param_hint="--field")
-            field, preset = FIELDS[self.field], self.preset or "grsim"
+            field, preset = FIELDS[self.field], self.simulator or "grsim"
             return served_line_up(field, self.robots, preset, self.realism, seed), rules
         loaded = load_scenario(scenario)
-        if self.referee and loaded.referee is not None:
+        if rules is not None and loaded.referee is not None:
             keepers = {f"{team.value}_keeper": number for team, number in loaded.goalkeepers().items()}
             rules = loaded.referee.model_copy(update=keepers)
-        return served_scenario(loaded, self.preset, self.realism), rules
+        return served_scenario(loaded, self.simulator, self.realism), rules
 
 
 @dataclass(frozen=True)
 class Pictures:
     """What the cameras see, and when."""
 
-    cameras: Annotated[int, typer.Option("--cameras", min=1, max=16, help="How many share the field.")] = 1
-    speed: Annotated[
-        float, typer.Option("--speed", min=0.05, max=20, help="Simulated time over real time.")
-    ] = 1.0
-    clock: Annotated[
-        Clock,
-        typer.Option(
-            "--clock",
-            help="Timestamps of the vision: sim counts from the start as grSim does, unix from 1970 "
-            "as real cameras do.",
-        ),
-    ] = Clock.SIM
-    seed: Annotated[
-        int, typer.Option("--seed", "-s", min=0, max=MAX_SEED, help="Seed of the cameras' noise.")
-    ] = 0
+    cameras: Annotated[int, option("--cameras", min=1, max=16)] = 1
+    speed_factor: Annotated[float, option("--speed-factor", min=0.05, max=20)] = 1.0
+    clock: Annotated[Clock, option("--clock")] = Clock.SIM
+    seed: Annotated[int, option("--seed", " of the cameras' noise", min=0, max=MAX_SEED)] = 0
 
 
 @dataclass(frozen=True)
 class Addresses:
     """Where packets go and come from."""
 
-    interface: Annotated[
-        str,
-        typer.Option(
-            "--interface", help="Own address of the interface to use; by default nothing leaves this machine."
-        ),
-    ] = "127.0.0.1"
-    vision: Annotated[str, typer.Option("--vision", help="Where the vision goes.")] = "224.5.23.2:10020"
-    tracker: Annotated[str, typer.Option("--tracker", help="Where tracked frames go.")] = "224.5.23.2:10010"
-    publish: Annotated[str, typer.Option("--publish", help="Where the referee's messages go.")] = (
-        "224.5.23.1:10003"
-    )
-    grsim_port: Annotated[int, _port("grsim", "grSim's commands and replacements.")] = 20011
-    control_port: Annotated[int, _port("control", "Teleports and configuration.")] = 10300
-    blue_port: Annotated[int, _port("blue", "Control of blue robots.")] = 10301
-    yellow_port: Annotated[int, _port("yellow", "Control of yellow robots.")] = 10302
-    blue_status_port: Annotated[int, _port("blue-status", "grSim's status of blue robots.")] = 30011
-    yellow_status_port: Annotated[int, _port("yellow-status", "grSim's status of yellow robots.")] = 30012
+    interface: Annotated[str, option("--interface", "; by default nothing leaves this machine")] = "127.0.0.1"
+    vision: Annotated[str, option("--vision")] = VISION
+    tracker: Annotated[str, option("--tracker")] = TRACKER
+    referee_address: Annotated[str, option("--referee-address")] = REFEREE
+    grsim_port: Annotated[int, _port("--grsim-port")] = 20011
+    control_port: Annotated[int, _port("--control-port")] = 10300
+    blue_port: Annotated[int, _port("--blue-port")] = 10301
+    yellow_port: Annotated[int, _port("--yellow-port")] = 10302
+    blue_status_port: Annotated[int, _port("--blue-status-port")] = 30011
+    yellow_status_port: Annotated[int, _port("--yellow-status-port")] = 30012
 
     def endpoints(self) -> Endpoints:
         """Return them all.
@@ -135,7 +113,7 @@ class Addresses:
         return Endpoints(
             vision=_address("--vision", self.vision),
             tracker=_address("--tracker", self.tracker),
-            referee=_address("--publish", self.publish),
+            referee=_address("--referee-address", self.referee_address),
             grsim=self.grsim_port,
             control=self.control_port,
             blue=self.blue_port,
@@ -153,26 +131,14 @@ def serve(
     *,
     line_up: LineUp,
     pictures: Pictures,
-    seconds: Annotated[
-        float | None, typer.Option("--seconds", min=0.1, help="Stop after this long; by default on Ctrl-C.")
-    ] = None,
+    seconds: Annotated[float | None, option("--seconds", min=0.1)] = None,
     addresses: Addresses,
     in_step: Annotated[
         bool,
-        typer.Option(
-            "--in-step",
-            help="Let time pass only when clients ask for it, by SimulationSyncRequest over TCP at the ports "
-            "of teleports and control.",
-        ),
+        option("--in-step", ", by SimulationSyncRequest over TCP at the ports of teleports and control"),
     ] = False,
-    log: Annotated[
-        Path | None,
-        typer.Option("--log", help="Write everything that is sent to this league log (*.log, *.log.gz)."),
-    ] = None,
-    live: Annotated[
-        bool,
-        typer.Option("--live", help="Show the field in the browser, where robots and ball can be moved."),
-    ] = False,
+    log: Annotated[Path | None, option("--log", " (*.log, *.log.gz)")] = None,
+    live: Annotated[bool, option("--live", ", where robots and ball can be moved")] = False,
     page: Page,
     as_json: Json = False,
 ) -> None:
@@ -198,7 +164,7 @@ def serve(
                 addresses.endpoints(),
                 addresses.interface,
                 pictures.cameras,
-                pictures.speed,
+                pictures.speed_factor,
                 pictures.seed,
                 epoch=time.time(),
                 log=writer,
@@ -275,21 +241,16 @@ def _announce(server: SimServer) -> None:
 
 def log_packets(
     out: Annotated[Path, typer.Argument(help="The log to write (*.log, *.log.gz).")],
-    seconds: Annotated[
-        float | None, typer.Option("--seconds", min=0.1, help="Stop after this long; by default on Ctrl-C.")
-    ] = None,
-    interface: Annotated[
-        str | None,
-        typer.Option("--interface", help="Own address of the interface to listen on; by default none."),
-    ] = None,
-    vision: Annotated[str, typer.Option("--vision", help="10006 on a real field.")] = "224.5.23.2:10020",
-    tracker: Annotated[str, typer.Option("--tracker")] = "224.5.23.2:10010",
-    referee: Annotated[str, typer.Option("--referee")] = "224.5.23.1:10003",
+    seconds: Annotated[float | None, option("--seconds", min=0.1)] = None,
+    interface: Annotated[str | None, option("--interface", "; by default none")] = None,
+    vision: Annotated[str, option("--vision", "; the port is 10006 on a real field")] = VISION,
+    tracker: Annotated[str, option("--tracker")] = TRACKER,
+    referee: Annotated[str, option("--referee-address")] = REFEREE,
     as_json: Json = False,
 ) -> None:
     """Log what vision, trackers and game controller send, in the league's format.
 
-    'robobt replay' turns a log into a page; 'robobt match --world LOG' lets a scenario's robots watch it.
+    'robobt show' turns a log into a page; 'robobt match --world LOG' lets a scenario's robots watch it.
 
     Keys of --json: vision, tracker, referee: packets written.
     """
@@ -302,7 +263,7 @@ def log_packets(
     endpoints = Endpoints(
         vision=_address("--vision", vision),
         tracker=_address("--tracker", tracker),
-        referee=_address("--referee", referee),
+        referee=_address("--referee-address", referee),
     )
     make_folders({"OUT": out})
     written = {

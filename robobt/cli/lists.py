@@ -1,22 +1,21 @@
-"""``robobt plays``, ``skills``, ``raters`` and ``policies``: list what is registered by name."""
+"""What is registered by name: plays, skills, raters, policies and tasks, as lists and one by one."""
 
 from __future__ import annotations
 
 import inspect
 import json
+from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Annotated, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
-import typer
 from rich.markup import escape
 
-from robobt.cli.common import Imports, Json, console, import_files, print_json, unknown, warn
+from robobt.cli.common import console, print_json, unknown, warn
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from pydantic.fields import FieldInfo
 
+    from robobt.learning.envs.arena_task import ArenaTask
     from robobt.skills.base import Skill
     from robobt.tree.parameters import Parameter
     from robobt.tree.registry import Registry
@@ -24,87 +23,63 @@ if TYPE_CHECKING:
 _T = TypeVar("_T")
 
 
-def plays(
-    name: Annotated[str | None, typer.Argument(help="One play, with its whole description.")] = None,
-    imports: Imports = None,
-    as_json: Json = False,
-) -> None:
-    """List the plays with their parameters.
+def list_registered(kind: str, name: str | None, *, as_json: bool) -> None:
+    """List plays, skills, raters, policies or tasks, or describe the one of that name.
 
-    Keys of --json: plays, a list with name, description, parameters (name,
-    type, required, default) and package (the distribution it came with, null
-    for robobt's own and imported files'); problems: what is wrong with other
-    packages' plays.
+    Raises:
+        typer.BadParameter: there is none of that name.
     """
+    listing = _KINDS[kind]
+    _list(kind, listing.registry(), name, as_json, listing.describe)
+
+
+def _plays() -> Registry[Any]:
     from robobt.plays import PLAYS
-    from robobt.tree.parameters import parameters_of
 
-    import_files(imports)
-    _list("plays", PLAYS, name, as_json, lambda play: _Listed(_doc(play), parameters_of(play)))
+    return PLAYS
 
 
-def skills(
-    name: Annotated[str | None, typer.Argument(help="One skill, with its whole description.")] = None,
-    imports: Imports = None,
-    as_json: Json = False,
-) -> None:
-    """List the skills and conditions: parameters, what they read and write in the robot's store.
-
-    Keys of --json: skills, a list with name, description, parameters (name,
-    type, required, default), reads and writes, condition (whether it is one),
-    and package (the distribution it came with, null for robobt's own and imported
-    files'); problems: what is wrong with other packages' skills.
-    """
+def _skills() -> Registry[Any]:
     import robobt.plays  # noqa: F401  (baselines have leaves of their own)
     from robobt.skills import SKILLS
-    from robobt.tree.parameters import parameters_of
 
-    import_files(imports)
-
-    def listed(cls: type[Skill]) -> _Listed:
-        own = [parameter for parameter in parameters_of(cls) if parameter.name != "name"]
-        store = {"reads": list(cls.reads), "writes": list(cls.writes)}
-        return _Listed(_doc(cls), own, store, condition=cls.condition)
-
-    _list("skills", SKILLS, name, as_json, listed)
+    return SKILLS
 
 
-def raters(
-    name: Annotated[str | None, typer.Argument(help="One rater, with its whole description.")] = None,
-    imports: Imports = None,
-    as_json: Json = False,
-) -> None:
-    """List the shot raters, which judge shots for SelectShot and others, with their settings.
-
-    A file names one alone or with settings, as rater: {name: expected_goal, threshold: 0.8}.
-
-    Keys of --json: raters, a list with name, description, parameters (name,
-    type, required, default) and package (the distribution it came with, null
-    for robobt's own and imported files'); problems: what is wrong with other
-    packages' raters.
-    """
+def _raters() -> Registry[Any]:
     from robobt.skills.aim.raters import RATERS
 
-    import_files(imports)
-    _list("raters", RATERS, name, as_json, _with_settings)
+    return RATERS
 
 
-def policies(
-    name: Annotated[str | None, typer.Argument(help="One policy, with its whole description.")] = None,
-    imports: Imports = None,
-    as_json: Json = False,
-) -> None:
-    """List the policies of GoToBall, which may stand in its parameter policy, with their settings.
-
-    A file names one alone or with settings, as policy: {name: geometric, arrival_speed: 0.3}.
-
-    Keys of --json: policies, a list with name, description, parameters (name,
-    type, required, default) and package (null); problems (none).
-    """
+def _policies() -> Registry[Any]:
     from robobt.skills.ball.go_to_ball import POLICIES
 
-    import_files(imports)
-    _list("policies", POLICIES, name, as_json, _with_settings)
+    return POLICIES
+
+
+def _tasks() -> Registry[Any]:
+    from robobt.learning import TASKS
+
+    return TASKS
+
+
+def _play(play: Callable[..., object]) -> _Listed:
+    from robobt.tree.parameters import parameters_of
+
+    return _Listed(_doc(play), parameters_of(play))
+
+
+def _skill(cls: type[Skill]) -> _Listed:
+    from robobt.tree.parameters import parameters_of
+
+    own = [parameter for parameter in parameters_of(cls) if parameter.name != "name"]
+    store = {"reads": list(cls.reads), "writes": list(cls.writes)}
+    return _Listed(_doc(cls), own, store, condition=cls.condition)
+
+
+def _task(task: type[ArenaTask]) -> _Listed:
+    return _Listed(_doc(task), [])
 
 
 def _with_settings(entry: object) -> _Listed:
@@ -141,7 +116,8 @@ def _list(
 ) -> None:
     if name is not None and name not in registry:
         raise unknown(name, registry)
-    entries = {entry: listed(registry[entry]) for entry in registry if name in (None, entry)}
+    names = list(registry) if name is None else [name]
+    entries = {entry: listed(registry[entry]) for entry in names}
     if as_json:
         things = [_data(entry, one, registry.source(entry)) for entry, one in entries.items()]
         print_json({kind: things, "problems": list(registry.problems)})
@@ -150,6 +126,40 @@ def _list(
             _print(entry, one, registry.source(entry), whole=name is not None)
     for problem in registry.problems:
         warn(problem)
+
+
+@dataclass(frozen=True)
+class _Listing:
+    """How a kind of thing is listed: where it is registered, and what is said of each."""
+
+    registry: Callable[[], Registry[Any]]
+    describe: Callable[[Any], _Listed]
+
+
+_KINDS = {
+    "plays": _Listing(_plays, _play),
+    "skills": _Listing(_skills, _skill),
+    "raters": _Listing(_raters, _with_settings),
+    "policies": _Listing(_policies, _with_settings),
+    "tasks": _Listing(_tasks, _task),
+}
+REGISTERED = tuple(_KINDS)
+"""The kinds of things that are registered by name."""
+
+
+def names_of(kind: str) -> list[str]:
+    """Return the names of all things of that kind."""
+    return list(_KINDS[kind].registry())
+
+
+def problem_with(kind: str, name: str) -> str | None:
+    """Return why another package failed to bring what has this name, None where none did."""
+    return _KINDS[kind].registry().problem_with(name)
+
+
+def registered(kind: str, name: str) -> bool:
+    """Return whether something of that kind has this name."""
+    return name in _KINDS[kind].registry()
 
 
 def _data(name: str, listed: _Listed, package: str | None) -> dict[str, object]:

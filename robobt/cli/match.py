@@ -27,9 +27,10 @@ from robobt.cli.common import (
     world_of,
 )
 from robobt.cli.layers import Layers, layer_names
-from robobt.cli.live import Page
 from robobt.cli.match_summary import TREES_FAILED, print_summary, tell_failures
-from robobt.cli.outputs import PAGES, RECORDING, make_folders
+from robobt.cli.options import option
+from robobt.cli.outputs import PAGE, PAGES, RECORDING, make_folders
+from robobt.cli.page import Page
 from robobt.cli.refereeing import Refereeing
 from robobt.cli.scenario_options import TeamChanges
 
@@ -37,7 +38,11 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from robobt.match import Scenario
+    from robobt.match.refereeing import RefereeFactory
     from robobt.match.results.results import MatchResult
+
+SIM = "sim"
+"""The built-in simulator, as a world's name; see :data:`robobt.worlds.SIM`."""
 
 
 class OnError(StrEnum):
@@ -52,15 +57,9 @@ class Trials:
     """How often a scenario is played, and in how many processes."""
 
     trials: Annotated[
-        int | None,
-        typer.Option("--trials", "-n", min=1, max=100_000, help="Trials to play; by default the scenario's."),
+        int | None, option("--trials", "; by default the scenario's number", min=1, max=100_000)
     ] = None
-    workers: Annotated[
-        int | None,
-        typer.Option(
-            "--workers", "-w", min=1, max=256, help="Processes; by default one a core, for 4 trials each."
-        ),
-    ] = None
+    workers: Annotated[int | None, option("--workers", ", for at least 4 trials each", min=1, max=256)] = None
     seed: Seed = None
 
     def count(self, scenario: Scenario) -> int:
@@ -85,36 +84,30 @@ class Trials:
 class Kept:
     """What is kept of the trials: a recording of one, and all results."""
 
-    replay: Annotated[
+    record: Annotated[
         Path | None,
-        typer.Option(
-            "--replay",
-            help="Record a trial to this file: a page for the browser (.html) or a recording for "
-            f"'robobt replay' ({RECORDING}).",
+        option(
+            "--record", f": a page for the browser ({PAGE}), or a recording for 'robobt show' ({RECORDING})"
         ),
     ] = None
-    record: Annotated[
+    record_trial: Annotated[
         int | None,
-        typer.Option(
-            "--record",
-            min=0,
-            help=f"Which trial to record, from 0; without --replay to SCENARIO-N{RECORDING}.",
-        ),
+        option("--record-trial", f"; without --record the file is SCENARIO-N{RECORDING}", min=0),
     ] = None
     record_layers: Layers = ""
     out: Annotated[
         Path | None,
-        typer.Option(
+        option(
             "--out",
-            help="Append each trial's result to this file (JSON lines) as it finishes; "
-            "a run that was stopped goes on from there.",
+            ": a line of JSON for each trial as it ends. The same command continues a run that was stopped",
+            metavar="FILE",
         ),
     ] = None
 
     @property
     def trial(self) -> int:
         """Which trial is recorded, if one is."""
-        return 0 if self.record is None else self.record
+        return self.record_trial or 0
 
     def recording(self, name: str, count: int) -> Path | None:
         """Return the file to write, of a scenario of that name with so many trials; None to record nothing.
@@ -124,15 +117,15 @@ class Kept:
         """
         if self.trial >= count:
             there = f"there is no trial {self.trial}; they are 0 to {count - 1}"
-            raise typer.BadParameter(there, param_hint="--record")
-        replay = self.replay
-        if replay is None and self.record is not None:
+            raise typer.BadParameter(there, param_hint="--record-trial")
+        file = self.record
+        if file is None and self.record_trial is not None:
             # A scenario's name is free text: it must not lead to another folder.
             safe = re.sub(r"[^\w.-]+", "_", name)
-            replay = Path(f"{safe}-{self.record}{RECORDING}")
-        if replay is not None:
-            _check_replay(replay, self.out)
-        return replay
+            file = Path(f"{safe}-{self.record_trial}{RECORDING}")
+        if file is not None:
+            _check_recording(file, self.out)
+        return file
 
 
 @dataclass(frozen=True)
@@ -141,43 +134,51 @@ class Trees:
 
     on_error: Annotated[
         OnError | None,
-        typer.Option(
+        option(
             "--on-error",
-            help="On an exception in a tree: stop that robot for the tick, or raise and end the run "
-            "with the node's path; by default as in the scenario.",
+            ": stop that robot for the tick, or raise and end the run with the node's path; by default as in "
+            "the scenario",
         ),
     ] = None
     substitute: Annotated[
         list[str] | None,
-        typer.Option(
+        option(
             "--substitute",
-            metavar="ROBOT:PATH=STATUS",
-            help="Let nodes follow a script, as in 'yellow 0:*/BlockShot=FAILURE' or "
-            "'blue:*/KickToTarget=[RUNNING, SUCCESS]'; may be given often.",
+            ", as in 'yellow 0:*/BlockShot=FAILURE' or 'blue:*/KickToTarget=[RUNNING, SUCCESS]'",
         ),
     ] = None
 
 
 @dataclass(frozen=True)
 class Played:
-    """Where a match is played, and who else is told of it."""
+    """Where a match is played, and who sees it meanwhile."""
 
     world: Where = "sim"
-    publish: Annotated[
+    publish: Annotated[bool, option("--publish", ", and play in real time")] = False
+    live: Annotated[
         bool,
-        typer.Option(
-            "--publish",
-            help="Play in real time and send vision, tracked frames and the referee's messages to the "
-            "league's programs on this machine (one worker).",
-        ),
+        option("--live", " in real time, until Ctrl-C; with --trials only those, and print results"),
     ] = False
+    speed_factor: Annotated[float, option("--speed-factor", " with --live", min=0.05, max=20.0)] = 1.0
+    paused: Annotated[bool, option("--paused", ", with --live")] = False
+
+    def check(self) -> None:
+        """Refuse options that would do nothing."""
+        if not self.live and (self.paused or self.speed_factor != 1.0):
+            option = "--paused" if self.paused else "--speed-factor"
+            raise typer.BadParameter("is for --live", param_hint=option)
+
+    @property
+    def alone(self) -> bool:
+        """Whether one process plays, one trial after the other."""
+        return self.world != SIM or self.publish or self.live
 
 
 def match(
     scenario: Annotated[
         str,
         typer.Argument(
-            help="A scenario file, or the name of a bundled one (see 'robobt scenarios').",
+            help="A scenario file, or the name of a bundled one (see 'robobt list scenarios').",
             autocompletion=complete_scenario,
         ),
     ],
@@ -188,16 +189,14 @@ def match(
     changes: TeamChanges,
     where: Played,
     refereeing: Refereeing,
-    live: Annotated[
-        bool,
-        typer.Option("--live", help="Play in real time and show it in the browser (one worker)."),
-    ] = False,
     page: Page,
     as_json: Json = False,
 ) -> None:
     """Play a scenario, once or many times, and print the results.
 
-    Ctrl-C stops the run; the trials that are finished are kept and printed.
+    Ctrl-C stops the run; the trials that are finished are kept and printed. With --live the browser shows
+    the match with every tree, and can pause, step, slow down, go back up to five minutes, steer robots and
+    save what was seen.
 
     Keys of --json: scenario, seed, trials (played), distinct (that differ), requested, interrupted;
     outcomes: for each outcome count, rate, low and high (95 % Wilson interval, null for one trial repeated);
@@ -209,30 +208,83 @@ def match(
     teams: with a referee, for blue and yellow the figures of 'robobt record statistics', each with n, mean
     and variance;
     real_time_factor: simulated time over wall time, in each process; trace: a hash that
-    is equal for equal runs; replay: the file written, or null.
+    is equal for equal runs; recording: the file written, or null.
 
     Exit code 3 when a robot's tree failed in some tick, though all trials were played.
     """
-    from robobt.match import MatchLoop, run_trials_in
-    from robobt.match.runner import Recorded
-    from robobt.worlds import SIM, scenario_settings
+    from robobt.worlds import scenario_settings
 
+    where.check()
     loaded, referees = refereeing.of(_changed(changes.scenario(scenario), trees))
     # The simulator's settings are checked before any worker is started.
     scenario_settings(loaded)
+    if where.live and run.trials is None:
+        if as_json or kept.out is not None:
+            option = "--json" if as_json else "--out"
+            raise typer.BadParameter("needs --trials, for without it --live plays on", param_hint=option)
+        run.processes(1, alone=True)
+        _play_on(loaded, run, kept, where, referees, page)
+        return
+    _play_trials(loaded, run, kept, where, referees, page, as_json=as_json)
+
+
+def _play_on(
+    loaded: Scenario, run: Trials, kept: Kept, where: Played, referees: RefereeFactory, page: Page
+) -> None:
+    """Play match after match in the browser, until Ctrl-C."""
+    from robobt.match import MatchLoop
+    from robobt.match.runner import trial_seed
+
+    if kept.record_trial is not None:
+        raise typer.BadParameter(
+            "needs --trials; --live records its first match", param_hint="--record-trial"
+        )
+    if kept.record is not None and not kept.record.name.endswith(RECORDING):
+        there = f"takes a name that ends in {RECORDING} here, not '{kept.record}'"
+        raise typer.BadParameter(there, param_hint="--record")
+    make_folders({"--record": kept.record})
+    start = loaded.seed if run.seed is None else run.seed
+    records = [kept.record]
+
+    def make(trial: int) -> MatchLoop:
+        recorded = records.pop() if records else None
+        layers = layer_names(kept.record_layers)
+        return MatchLoop(loaded, trial_seed(start, trial), factory, recorded, trial, referees, layers)
+
+    with page.server() as server, world_of(where.world, where.publish) as factory:
+        from robobt.live.session import Live
+
+        Live(server, where.speed_factor, where.paused).play_on(make)
+
+
+def _play_trials(
+    loaded: Scenario,
+    run: Trials,
+    kept: Kept,
+    where: Played,
+    referees: RefereeFactory,
+    page: Page,
+    *,
+    as_json: bool,
+) -> None:
+    """Play a number of trials and print what they came to."""
+    from robobt.match import MatchLoop, run_trials_in
+    from robobt.match.runner import Recorded
+
     count = run.count(loaded)
-    processes = run.processes(count, where.world != SIM or where.publish or live)
-    replay, layers = kept.recording(loaded.name, count), layer_names(kept.record_layers)
-    make_folders({"--replay": replay, "--out": kept.out})
+    processes = run.processes(count, where.alone)
+    file, layers = kept.recording(loaded.name, count), layer_names(kept.record_layers)
+    make_folders({"--record": file, "--out": kept.out})
     with tempfile.TemporaryDirectory() as folder:
-        as_page = replay is not None and replay.name.lower().endswith(PAGES)
-        recording = Path(folder) / f"trial{RECORDING}" if as_page else replay
+        as_page = file is not None and file.name.lower().endswith(PAGES)
+        recording = Path(folder) / f"trial{RECORDING}" if as_page else file
         with ExitStack() as stack:
             play: Callable[[MatchLoop], MatchResult] = MatchLoop.play
-            if live:
+            if where.live:
                 from robobt.live.session import Live
 
-                play = Live(stack.enter_context(page.server())).conduct
+                server = stack.enter_context(page.server())
+                play = Live(server, where.speed_factor, where.paused).conduct
             progress = stack.enter_context(Progress(loaded.name, count))
             played = run_trials_in(
                 loaded,
@@ -249,7 +301,7 @@ def match(
         if not played.results:
             errors.print("robobt: stopped before the first trial was finished")
             raise typer.Exit(130)
-        written = replay if any(result.trial == kept.trial for result in played.results) else None
+        written = file if any(result.trial == kept.trial for result in played.results) else None
         if as_page and written is not None:
             from robobt.live.replay_html import write_html
 
@@ -259,13 +311,13 @@ def match(
         extra = {
             "requested": count,
             "interrupted": played.interrupted,
-            "replay": None if written is None else str(written),
+            "recording": None if written is None else str(written),
         }
         print_json({**summary.to_json(), **extra})
     else:
         print_summary(summary, played, count)
         if written is not None:
-            say(f"Replay of trial {kept.trial}: {written}")
+            say(f"Recording of trial {kept.trial}: {written}")
     failed = tell_failures(summary, loaded.on_error)
     if played.interrupted:
         raise typer.Exit(130)
@@ -293,11 +345,12 @@ def _changed(scenario: Scenario, trees: Trees) -> Scenario:
     return scenario
 
 
-def _check_replay(path: Path, out: Path | None) -> None:
+def _check_recording(path: Path, out: Path | None) -> None:
     """Refuse a name that is more likely another file's: what is there is replaced."""
     ends = (*PAGES, RECORDING)
     if not path.name.lower().endswith(ends):
         there = f"takes a name that ends in {', '.join(ends)}, not '{path}'"
-        raise typer.BadParameter(there, param_hint="--replay")
+        trial = "; which trial is recorded is --record-trial" if path.name.isdecimal() else ""
+        raise typer.BadParameter(f"{there}{trial}", param_hint="--record")
     if out is not None and path.resolve() == out.resolve():
-        raise typer.BadParameter("the replay and the results need a file each", param_hint="--replay")
+        raise typer.BadParameter("the recording and the results need a file each", param_hint="--record")

@@ -1,4 +1,4 @@
-"""``robobt record``: export recordings to other tools, and save ticks as regression cases."""
+"""``robobt record``: export recordings, save ticks as regression cases, count, record demonstrations."""
 
 from __future__ import annotations
 
@@ -8,62 +8,69 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from robobt.cli.common import Imports, Json, console, import_files, print_json, say
+from robobt.cli.common import (
+    MAX_SEED,
+    Imports,
+    Json,
+    Progress,
+    console,
+    import_files,
+    parse_assignments,
+    print_json,
+    say,
+)
+from robobt.cli.options import option
 from robobt.cli.outputs import RECORDING, make_folders
 from robobt.cli.team_figures import team_figures
+from robobt.cli.train import Task
 
 if TYPE_CHECKING:
     from robobt.match.recording import Recording
     from robobt.world import RobotId
 
 _File = Annotated[Path, typer.Argument(help=f"A recording (*{RECORDING}).")]
-_Robot = Annotated[
-    str | None,
-    typer.Option("--robot", help="Whose tree, as 'blue 0'; may be left out where only one was recorded."),
-]
+_Robot = Annotated[str | None, option("--robot", "; may be left out where only one was recorded")]
+_BTLOG, _MCAP = ".btlog", ".mcap"
 
 
 def export(
     recording: _File,
-    btlog: Annotated[
-        bool, typer.Option("--btlog", help="As the .btlog file of BehaviorTree.CPP's FileLogger2.")
-    ] = False,
-    mcap: Annotated[
-        bool, typer.Option("--mcap", help="As an MCAP file of the whole match, for Foxglove and Rerun.")
-    ] = False,
-    robot: _Robot = None,
     out: Annotated[
-        Path | None,
-        typer.Option("--out", help="The file to write; by default beside the recording."),
-    ] = None,
+        Path,
+        option(
+            "--out",
+            f" it: as an MCAP file of the whole match for Foxglove and Rerun ({_MCAP}), or a robot's tree as "
+            f"BehaviorTree.CPP's FileLogger2 logs it ({_BTLOG})",
+            metavar="FILE",
+        ),
+    ],
+    robot: _Robot = None,
 ) -> None:
     """Write a recording in a form that other tools read."""
     from robobt.match.recording import load_recording
-    from robobt.match.recording.btlog import write_btlog
 
-    if btlog == mcap:
-        raise typer.BadParameter("name one format to write: --btlog or --mcap")
+    if out.suffix not in (_MCAP, _BTLOG):
+        there = f"takes a name that ends in {_MCAP} or {_BTLOG}, not '{out}'"
+        raise typer.BadParameter(there, param_hint="--out")
+    if robot is not None and out.suffix == _MCAP:
+        raise typer.BadParameter("is for .btlog: an MCAP file holds all robots", param_hint="--robot")
     loaded = load_recording(recording)
-    if mcap:
+    _spare(recording, out)
+    make_folders({"--out": out})
+    if out.suffix == _MCAP:
         from robobt.match.recording.mcap import write_mcap
 
-        target = recording.with_name(f"{recording.name.removesuffix(RECORDING)}.mcap") if out is None else out
-        _spare(recording, target)
-        make_folders({"--out": target})
-        say(f"MCAP file: {write_mcap(loaded, target)}")
+        say(f"MCAP file: {write_mcap(loaded, out)}")
         return
-    who = recorded_robot(loaded, robot)
-    stem = recording.name.removesuffix(RECORDING)
-    target = recording.with_name(f"{stem}-{who.team.value}-{who.number}.btlog") if out is None else out
-    _spare(recording, target)
-    make_folders({"--out": target})
-    say(f"Log: {write_btlog(loaded, who, target)}")
+    from robobt.match.recording.btlog import write_btlog
+
+    say(f"Log: {write_btlog(loaded, recorded_robot(loaded, robot), out)}")
 
 
 def case(
     recording: _File,
-    tick: Annotated[int, typer.Option("--tick", min=0, help="Which tick, from 0.")],
-    out: Annotated[Path, typer.Option("--out", help="The regression case to write, a YAML file.")],
+    tick: Annotated[int, option("--tick", min=0)],
+    out: Annotated[Path, option("--out", " the regression case (.yaml)", metavar="FILE")],
     robot: _Robot = None,
     imports: Imports = None,
 ) -> None:
@@ -110,6 +117,52 @@ def statistics(
         print_json(teams)
     else:
         console.print(team_figures(teams))
+
+
+def demonstrations(
+    task: Task,
+    out: Annotated[Path, option("--out", " the episodes (.parquet)", metavar="FILE")],
+    episodes: Annotated[int, option("--episodes", min=1, max=100_000)] = 200,
+    by: Annotated[str, option("--by")] = "skill",
+    seed: Annotated[int, option("--seed", min=0, max=MAX_SEED)] = 0,
+    changes: Annotated[
+        list[str] | None, option("--set", " of the environment, as in simulator=robobulls")
+    ] = None,
+    as_json: Json = False,
+) -> None:
+    """Record a hand-written skill doing a task, for learning to begin with.
+
+    Keys of --json: task, file, episodes, steps, success (share), mean_time (seconds).
+    """
+    from robobt.learning.training.demonstrations import record
+    from robobt.learning.training.settings import load_settings
+    from robobt.learning.training.teachers import TEACHERS
+
+    if by not in TEACHERS:
+        raise typer.BadParameter(f"must be {' or '.join(TEACHERS)}, not {by!r}", param_hint="--by")
+    given = {
+        f"environment.{name}": value for name, value in parse_assignments(changes or [], "--set").items()
+    }
+    environment = load_settings(task, "fast", given).environment
+    make_folders({"--out": out})
+    with Progress(f"recording {task}", episodes) as progress:
+        recorded = record(environment, episodes, by, seed, lambda _: progress.advance())
+    recorded.write(out)
+    figures = {
+        "task": task,
+        "file": str(out),
+        "episodes": recorded.episodes,
+        "steps": len(recorded),
+        "success": float(recorded.success.sum()) / recorded.episodes,
+        "mean_time": len(recorded) / recorded.episodes * environment.period,
+    }
+    if as_json:
+        print_json(figures)
+        return
+    say(
+        f"{recorded.episodes} episodes, {len(recorded)} steps, {figures['success']:.1%} successes, "
+        f"{figures['mean_time']:.2f} s each, in {out}."
+    )
 
 
 def recorded_robot(recording: Recording, text: str | None) -> RobotId:

@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from robobt.cli.options import option
+
 if TYPE_CHECKING:
     from robobt.match import Scenario
     from robobt.match.refereeing import RefereeFactory
@@ -40,30 +42,16 @@ class Refereeing:
 
     referee: Annotated[
         Who | None,
-        typer.Option(
-            "--referee",
-            help="Who decides: robobt's own referee, the league's official game controller, which "
-            "is stepped with the match, or none; by default as in the scenario. With a game controller in "
-            "the world (follow_referee=true) it has to be none.",
-        ),
+        option("--referee", "; by default as in the scenario, and none where the world brings a referee"),
     ] = None
     game_controller: Annotated[
         Path | None,
-        typer.Option(
+        option(
             "--game-controller",
-            metavar="PATH",
-            help="The official game controller's program; by default what ROBOBT_GAME_CONTROLLER names, "
-            "or ssl-game-controller on the PATH.",
+            "; by default what ROBOBT_GAME_CONTROLLER names, or ssl-game-controller on the PATH",
         ),
     ] = None
-    stages: Annotated[
-        Stages | None,
-        typer.Option(
-            "--stages",
-            help="full: two halves of five minutes of playing time, whatever ends.time_limit, "
-            "ends.score_limit and referee.half_length are.",
-        ),
-    ] = None
+    stages: Annotated[Stages | None, option("--stages")] = None
 
     def of(self, scenario: Scenario) -> tuple[Scenario, RefereeFactory]:
         """Return the scenario as these options change it, and who makes its referee; see :func:`refereed`."""

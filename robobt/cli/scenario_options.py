@@ -9,25 +9,17 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from robobt.cli.common import Imports, blaming, import_files, parse_assignments
+from robobt.cli.options import option
 
 if TYPE_CHECKING:
     from robobt.match import Scenario
 
-Set = Annotated[
-    list[str] | None,
-    typer.Option(
-        "--set",
-        metavar="NAME=VALUE",
-        help="Change the scenario: 'ends.time_limit=10', 'simulator.preset=grsim', "
-        "'blue 0.max_distance=2'; may be given often.",
-    ),
-]
+SETTINGS = ", as in 'ends.time_limit=10', 'simulator.preset=grsim' or 'blue 0.max_distance=2'"
+"""What --set changes in a scenario."""
 
-PLAY = "PLAY[:NAME=VALUE,...]"
-TEAM_HELP = "Play of this team's robots but its goalkeeper, with parameters; ':NAME=VALUE' keeps the play."
-
-Blue = Annotated[str, typer.Option("--blue", metavar=PLAY, help=TEAM_HELP)]
-Yellow = Annotated[str, typer.Option("--yellow", metavar=PLAY, help=TEAM_HELP)]
+Set = Annotated[list[str] | None, option("--set", SETTINGS)]
+Blue = Annotated[str, option("--blue")]
+Yellow = Annotated[str, option("--yellow")]
 
 
 @dataclass(frozen=True)

@@ -1,50 +1,52 @@
-"""``robobt scenarios``: list the bundled scenarios."""
+"""The bundled scenarios in a list, and one with all of it."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated
+from pathlib import Path
+from typing import TYPE_CHECKING
 
-import typer
 from rich.markup import escape
 
-from robobt.cli.common import Imports, Json, console, import_files, print_json, say, table
+from robobt.cli.common import console, print_json, say, table
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
-    from pathlib import Path
 
     from robobt.match import Scenario
 
 
-def scenarios(
-    name: Annotated[
-        str | None, typer.Argument(help="One scenario, bundled or a file, with all of it.")
-    ] = None,
-    imports: Imports = None,
-    as_json: Json = False,
-) -> None:
-    """List the bundled scenarios, or show one.
-
-    Keys of --json: scenarios, a list with name, description, file, field (length
-    and width in metres), period and time_limit (seconds), trials, referee
-    (whether there is one), ball (where it starts) and robots (robot, play,
-    params, start: in the own team's view, own goal at -x).
-    """
+def list_scenarios(*, as_json: bool) -> None:
+    """List the bundled scenarios."""
     from robobt.config.resources import bundled_scenarios
 
-    import_files(imports)
-    if name is None and not as_json:
+    if not as_json:
         _print_list(bundled_scenarios())
         return
     from robobt.match import load_scenario
 
+    loaded = [load_scenario(source, build=False) for source in bundled_scenarios()]
+    print_json({"scenarios": [_scenario_data(scenario) for scenario in loaded]})
+
+
+def show_scenario(name: str, out: Path | None, *, as_json: bool) -> None:
+    """Print a scenario, bundled or of a file, or write a copy of its file to ``out``."""
+    from robobt.config.resources import bundled_scenarios
+    from robobt.match import load_scenario
+
     bundled = bundled_scenarios()
-    # A scenario of one's own is looked at as a match would, and its models are loaded.
-    loaded = [load_scenario(source, build=source not in bundled) for source in ([name] if name else bundled)]
+    # A scenario of one's own is checked as a match would check it, and its models are loaded.
+    loaded = load_scenario(name, build=name not in bundled)
+    if out is not None:
+        from robobt.config.atomic import write_atomically
+
+        write_atomically(out, bundled.get(name, Path(name)).read_bytes())
     if as_json:
-        print_json({"scenarios": [_scenario_data(scenario) for scenario in loaded]})
-        return
-    _print_scenario(loaded[0])
+        print_json({"scenarios": [_scenario_data(loaded)]})
+    elif out is not None:
+        say(f"Scenario: {out}")
+    else:
+        _print_scenario(loaded)
+        say(f"All of it as a file to change: robobt show {name} --out mine.yaml")
 
 
 def _print_list(files: Mapping[str, Path]) -> None:

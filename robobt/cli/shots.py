@@ -8,9 +8,8 @@ from math import isnan
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
-import typer
-
 from robobt.cli.common import MAX_SEED, Json, Progress, print_json, say, warn
+from robobt.cli.options import option
 from robobt.cli.outputs import make_folders
 
 if TYPE_CHECKING:
@@ -21,7 +20,7 @@ _MOST_TOLD = 10
 """How many shots that are left out are named."""
 
 
-class Model(StrEnum):
+class Predictor(StrEnum):
     """The predictors that can be trained."""
 
     NN = "shot_nn"
@@ -38,26 +37,17 @@ class Part(StrEnum):
 
 def train(
     data: Annotated[
-        list[Path],
-        typer.Option(
-            "--data", help="Shots of 'robobt collect shots', or the author's file; may be given again."
-        ),
+        list[Path], option("--data", " from 'robobt shots collect' or the paper; may be repeated")
     ],
-    model: Annotated[
-        Model,
-        typer.Option("--model", help="What to train; shot_best is made for a few hundred recorded shots."),
+    predictor: Annotated[
+        Predictor, option("--predictor", "; shot_best is made for a few hundred recorded shots")
     ],
-    out: Annotated[Path, typer.Option("--out", "-o", help="The folder to write it to.")] = Path("out/models"),
-    name: Annotated[str, typer.Option("--name", help="What to call it; the predictor's name without.")] = "",
-    real: Annotated[
-        Path | None,
-        typer.Option(
-            "--real", help="Folder of the author's shots: how it does on the tests goes on the card."
-        ),
-    ] = None,
-    epochs: Annotated[int, typer.Option("--epochs", min=1, max=10_000, help="Of shot_expected.")] = 40,
-    seed: Annotated[int, typer.Option("--seed", "-s", min=0, max=MAX_SEED, help="Of the training.")] = 0,
-    force: Annotated[bool, typer.Option("--force", help="Write over a model that is there.")] = False,
+    out: Annotated[Path, option("--out", " the model", metavar="FOLDER")] = Path("out/models"),
+    name: Annotated[str, option("--name", "; by default the predictor's")] = "",
+    real: Annotated[Path | None, option("--real")] = None,
+    epochs: Annotated[int, option("--epochs", " shot_expected", min=1, max=10_000)] = 40,
+    seed: Annotated[int, option("--seed", min=0, max=MAX_SEED)] = 0,
+    force: Annotated[bool, option("--force")] = False,
     as_json: Json = False,
 ) -> None:
     """Train a shot predictor and write it with its model card.
@@ -75,15 +65,15 @@ def train(
     from robobt.shots.predict.shipped import train_shipped
     from robobt.shots.predict.shot_sets import load_shot_sets
 
-    target = out / f"{name or model.value}{SUFFIXES['torchscript']}"
+    target = out / f"{name or predictor.value}{SUFFIXES['torchscript']}"
     refuse_to_replace(target, force)
     make_folders({"--out": out}, folders=True)
     torch.set_num_threads(1)
     table = pa.concat_tables([read_shots(file) for file in data])
     recorded = None if real is None else load_shot_sets(real).test
-    with Progress(model.value, epochs) as progress:
+    with Progress(predictor.value, epochs) as progress:
         file, figures = train_shipped(
-            model.value,
+            predictor.value,
             table,
             out,
             called=name,
@@ -96,24 +86,18 @@ def train(
     if as_json:
         print_json({"file": str(file), **{key: figure.model_dump() for key, figure in figures.items()}})
         return
-    what = "cross-validated" if model is Model.BEST else "on shots that training never saw"
+    what = "cross-validated" if predictor is Predictor.BEST else "on shots that training never saw"
     say(f"{file}: {what}: {_figures(figures)}.")
     if recorded is not None:
         say(f"On the real shots: {_figures(figures, 'real_')}.")
 
 
 def score(
-    model: Annotated[str, typer.Option("--model", help="A shipped shot predictor or a file.")],
+    model: Annotated[str, option("--model")],
     data: Annotated[
-        Path,
-        typer.Option(
-            "--data",
-            help="Folder with the author's train.csv and test.csv, or one file of any shots.",
-        ),
+        Path, option("--data", ": one file, or the folder of the paper's train.csv and test.csv")
     ],
-    part: Annotated[
-        Part, typer.Option("--part", help="Which of the author's; of one file all shots are judged.")
-    ] = Part.TEST,
+    part: Annotated[Part, option("--part", " when --data is their folder")] = Part.TEST,
     as_json: Json = False,
 ) -> None:
     """Judge a shot predictor on recorded shots.
@@ -167,15 +151,9 @@ def _figures(figures: Mapping[str, Measured], prefix: str = "") -> str:
 
 
 def draw(
-    picture: Annotated[Path, typer.Option("--picture", "-o", help="The picture to write (.png).")] = Path(
-        "goal_map.png"
-    ),
-    model: Annotated[
-        str, typer.Option("--model", help="Predictor of a shot's scene: a shipped model or a file.")
-    ] = "shot_expected",
-    spacing: Annotated[
-        float, typer.Option("--spacing", min=0.02, max=1.0, help="Metres between places.")
-    ] = 0.1,
+    out: Annotated[Path, option("--out", " the picture (.png)", metavar="FILE")] = Path("goal_map.png"),
+    model: Annotated[str, option("--model", " that predicts from a shot's scene")] = "shot_expected",
+    spacing: Annotated[float, option("--spacing", min=0.02, max=1.0)] = 0.1,
     as_json: Json = False,
 ) -> None:
     """Draw the probability of a goal from everywhere in the opponents' half.
@@ -187,13 +165,11 @@ def draw(
     """
     from robobt.shots.goal_map import draw_goal_map, goal_map
 
-    make_folders({"--picture": picture})
+    make_folders({"--out": out})
     found = goal_map(model, spacing)
-    draw_goal_map(found, picture)
+    draw_goal_map(found, out)
     if as_json:
         rows = [[None if isnan(p) else p for p in row] for row in found.probability.tolist()]
-        print_json(
-            {"picture": str(picture), "x": found.x.tolist(), "y": found.y.tolist(), "probability": rows}
-        )
+        print_json({"picture": str(out), "x": found.x.tolist(), "y": found.y.tolist(), "probability": rows})
         return
-    say(f"Map of the goal probability: {picture}")
+    say(f"Map of the goal probability: {out}")

@@ -1,4 +1,4 @@
-"""``robobt train`` and ``robobt demonstrations``: learn skills, and record what hand-written ones do."""
+"""``robobt train``: learn a skill."""
 
 from __future__ import annotations
 
@@ -14,7 +14,6 @@ from rich.markup import escape
 from robobt.cli.common import (
     MAX_SEED,
     Json,
-    Progress,
     Workers,
     console,
     cores,
@@ -24,8 +23,9 @@ from robobt.cli.common import (
     say,
     table,
 )
-from robobt.cli.live import Page
+from robobt.cli.options import option
 from robobt.cli.outputs import make_folders
+from robobt.cli.page import Page
 
 if TYPE_CHECKING:
     from rich.live import Live
@@ -39,21 +39,16 @@ Task = Annotated[
     str,
     typer.Argument(help="What to learn: go_to_ball, shoot, duel, ..., or my_task.py:MyTask."),
 ]
-Changes = Annotated[
-    list[str] | None, typer.Option("--set", help="Change a setting, as agent.n_step=5; may be given again.")
-]
+Changes = Annotated[list[str] | None, option("--set", ", as in agent.n_step=5")]
 
 
 @dataclass(frozen=True)
 class Seeds:
     """Which seeds are trained."""
 
-    seeds: Annotated[
-        int, typer.Option("--seeds", "-n", min=1, max=1000, help="How many seeds, side by side.")
-    ] = 1
+    seeds: Annotated[int, option("--seeds", ", side by side", min=1, max=1000)] = 1
     seed: Annotated[
-        int | None,
-        typer.Option("--seed", "-s", min=0, max=MAX_SEED, help="The first seed; by default the settings'."),
+        int | None, option("--seed", ", the first of several; by default the settings'", min=0, max=MAX_SEED)
     ] = None
 
     def of(self, settings: TrainSettings) -> range:
@@ -64,22 +59,17 @@ class Seeds:
 
 def train(
     task: Task,
-    preset: Annotated[
-        str, typer.Option("--preset", "-p", help="Settings to start from: a preset's name or a YAML file.")
-    ] = "fast",
+    preset: Annotated[str, option("--preset")] = "fast",
     *,
     seeds: Seeds,
     changes: Changes = None,
     out: Annotated[
-        Path | None, typer.Option("--out", "-o", help="The run's folder; by default runs/TASK-PRESET.")
+        Path | None, option("--out", " the run; by default in runs/TASK-PRESET", metavar="FOLDER")
     ] = None,
     workers: Workers = None,
-    resume: Annotated[bool, typer.Option("--resume", help="Go on with a run that was cut off.")] = False,
+    resume: Annotated[bool, option("--resume")] = False,
     live: Annotated[
-        bool,
-        typer.Option(
-            "--live", help="Show each evaluation's policy in the browser; training waits meanwhile."
-        ),
+        bool, option("--live", ": the policy of each evaluation; training waits meanwhile")
     ] = False,
     page: Page,
     as_json: Json = False,
@@ -147,55 +137,6 @@ def _settings(task: str, preset: str, changes: list[str]) -> TrainSettings:
             if f"{error.field}.".startswith(f"{name}.") or f"{name}.".startswith(f"{error.field}."):
                 raise SettingsError("--set", error.problem, error.field) from error
         raise
-
-
-def demonstrations(
-    task: Task,
-    out: Annotated[Path, typer.Option("--out", "-o", help="The Parquet file to write.")],
-    episodes: Annotated[int, typer.Option("--episodes", "-n", min=1, max=100_000, help="How many.")] = 200,
-    by: Annotated[
-        str, typer.Option("--by", help="Who plays: skill (the hand-written one) or script (the simplest).")
-    ] = "skill",
-    seed: Annotated[int, typer.Option("--seed", "-s", min=0, max=MAX_SEED, help="Of starts and noise.")] = 0,
-    changes: Annotated[
-        list[str] | None,
-        typer.Option("--set", help="Change the environment, as simulator=robobulls; may be given again."),
-    ] = None,
-    as_json: Json = False,
-) -> None:
-    """Record a hand-written skill playing a task, for replay buffers to begin with.
-
-    Keys of --json: task, file, episodes, steps, success (share), mean_time (seconds).
-    """
-    from robobt.learning.training.demonstrations import record
-    from robobt.learning.training.settings import load_settings
-    from robobt.learning.training.teachers import TEACHERS
-
-    if by not in TEACHERS:
-        raise typer.BadParameter(f"must be {' or '.join(TEACHERS)}, not {by!r}", param_hint="--by")
-    given = {
-        f"environment.{name}": value for name, value in parse_assignments(changes or [], "--set").items()
-    }
-    environment = load_settings(task, "fast", given).environment
-    make_folders({"--out": out})
-    with Progress(f"recording {task}", episodes) as progress:
-        recorded = record(environment, episodes, by, seed, lambda _: progress.advance())
-    recorded.write(out)
-    figures = {
-        "task": task,
-        "file": str(out),
-        "episodes": recorded.episodes,
-        "steps": len(recorded),
-        "success": float(recorded.success.sum()) / recorded.episodes,
-        "mean_time": len(recorded) / recorded.episodes * environment.period,
-    }
-    if as_json:
-        print_json(figures)
-        return
-    say(
-        f"{recorded.episodes} episodes, {len(recorded)} steps, {figures['success']:.1%} successes, "
-        f"{figures['mean_time']:.2f} s each, in {out}."
-    )
 
 
 class _LiveTable:

@@ -21,14 +21,8 @@ from tests.match.scripted import data
 from tests.registries import temporarily
 
 COMMANDS = (
-    "match",
-    "replay",
-    "scenarios",
-    "plays",
-    "skills",
-    "raters",
-    "policies",
-    "tree",
+    *("match", "compare", "tournament", "list", "show", "record"),
+    *("train", "evaluate", "export", "shots", "serve", "log"),
 )
 MINE = """
 from robobt.plays import PLAYS
@@ -130,7 +124,7 @@ class TestMatch:
         printed = told("match", scenario, "--trials", "3", "--seed", "4")
         assert (printed["trials"], printed["requested"], printed["seed"]) == (3, 3, 4)
         assert printed["interrupted"] is False
-        assert printed["replay"] is None
+        assert printed["recording"] is None
         explained = help_of("match")
         for key in (*printed, *printed["robots"]["blue 0"], *next(iter(printed["outcomes"].values()))):
             assert key in explained
@@ -139,22 +133,22 @@ class TestMatch:
         traces = [told("match", scenario, "-n", "3", "-s", seed)["trace"] for seed in ("1", "1", "2")]
         assert traces[0] == traces[1] != traces[2]
 
-    def test_a_replay_can_be_a_page_at_once(self, scenario: Path, tmp_path: Path):
+    def test_a_recording_can_be_a_page_at_once(self, scenario: Path, tmp_path: Path):
         page = tmp_path / "replay.html"
-        assert told("match", scenario, "--replay", page)["replay"] == str(page)
+        assert told("match", scenario, "--record", page)["recording"] == str(page)
         assert page.read_text().startswith("<!doctype html>")
 
     def test_a_trial_can_be_chosen_for_recording(self, scenario: Path, tmp_path: Path):
         recording = tmp_path / "second.robobt.arrows"
-        printed = robobt("match", scenario, "-n", "3", "--record", "1", "--replay", recording).stdout
-        assert f"Replay of trial 1: {recording}" in printed
+        printed = robobt("match", scenario, "-n", "3", "--record-trial", "1", "--record", recording).stdout
+        assert f"Recording of trial 1: {recording}" in printed
         assert load_recording(recording).header.trial == 1
 
     def test_a_recording_has_a_name_of_its_own(
         self, scenario: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
     ):
         monkeypatch.chdir(tmp_path)
-        robobt("match", scenario, "--record", "0")
+        robobt("match", scenario, "--record-trial", "0")
         assert (tmp_path / "test-0.robobt.arrows").exists()
 
     def test_a_name_with_a_path_in_it_leads_nowhere_else(
@@ -164,27 +158,29 @@ class TestMatch:
         inside = tmp_path / "inside"
         inside.mkdir()
         monkeypatch.chdir(inside)
-        robobt("match", scenario, "--record", "0")
+        robobt("match", scenario, "--record-trial", "0")
         assert [path.name for path in inside.iterdir()] == [".._elsewhere_mine-0.robobt.arrows"]
 
     @pytest.mark.parametrize("name", ["mine.yaml", "results.jsonl", "replay.mp4", "replay"])
-    def test_a_replay_does_not_replace_a_file_that_is_none(self, scenario: Path, tmp_path: Path, name: str):
+    def test_a_recording_does_not_replace_a_file_of_another_kind(
+        self, scenario: Path, tmp_path: Path, name: str
+    ):
         before = scenario.read_text()
-        complained = complaint("match", scenario, "--replay", tmp_path / name, code=2)
+        complained = complaint("match", scenario, "--record", tmp_path / name, code=2)
         assert "takes a name that ends in" in complained
         assert [path.name for path in tmp_path.iterdir()] == [scenario.name]
         assert scenario.read_text() == before
 
-    def test_replay_and_results_are_two_files(self, scenario: Path, tmp_path: Path):
+    def test_recording_and_results_are_two_files(self, scenario: Path, tmp_path: Path):
         both = tmp_path / "both.robobt.arrows"
-        assert "a file each" in complaint("match", scenario, "--replay", both, "--out", both, code=2)
+        assert "a file each" in complaint("match", scenario, "--record", both, "--out", both, code=2)
 
     @pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs a disk that is always full")
     @pytest.mark.parametrize("name", ["full.html", "full.robobt.arrows"])
     def test_a_full_disk_is_told_with_the_file(self, scenario: Path, tmp_path: Path, name: str):
         path = tmp_path / name
         path.symlink_to("/dev/full")
-        assert complaint("match", scenario, "--replay", path) == f"robobt: {path}: No space left on device\n"
+        assert complaint("match", scenario, "--record", path) == f"robobt: {path}: No space left on device\n"
 
     def test_results_are_kept_and_a_run_goes_on_from_there(self, scenario: Path, tmp_path: Path):
         out = tmp_path / "results.jsonl"
@@ -220,7 +216,7 @@ class TestMatch:
         assert said in shown if said else "little" not in shown
 
     def test_a_page_may_end_in_htm(self, scenario: Path, tmp_path: Path):
-        robobt("match", scenario, "--replay", tmp_path / "x.HTM")
+        robobt("match", scenario, "--record", tmp_path / "x.HTM")
         assert (tmp_path / "x.HTM").read_text().startswith("<!")
 
     def test_a_tree_that_fails_can_end_the_run(self, scenario: Path):
@@ -259,86 +255,106 @@ class TestMatch:
 class TestReplay:
     def test_a_recording_becomes_a_page_beside_it_or_where_it_is_wanted(self, scenario: Path, tmp_path: Path):
         recording = tmp_path / "a.robobt.arrows"
-        robobt("match", scenario, "--replay", recording)
-        assert robobt("replay", recording).stdout == f"Replay: {tmp_path / 'a.html'}\n"
-        robobt("replay", recording, "--html", tmp_path / "b.html")
+        robobt("match", scenario, "--record", recording)
+        assert robobt("show", recording).stdout == f"Page: {tmp_path / 'a.html'}\n"
+        robobt("show", recording, "--out", tmp_path / "b.html")
         assert (tmp_path / "a.html").read_text() == (tmp_path / "b.html").read_text()
 
     def test_a_page_does_not_replace_its_recording(self, scenario: Path, tmp_path: Path):
         recording = tmp_path / "a.robobt.arrows"
-        robobt("match", scenario, "--replay", recording)
-        before = recording.read_bytes()
-        assert "is the recording itself" in complaint("replay", recording, "--html", recording, code=2)
-        assert recording.read_bytes() == before
+        robobt("match", scenario, "--record", recording)
+        page = tmp_path / "a.html"
+        page.hardlink_to(recording)
+        assert "is the recording itself" in complaint("show", recording, code=2)
+        assert "takes a name that ends in .html" in complaint("show", recording, "--out", recording, code=2)
+        assert page.read_bytes() == recording.read_bytes()
 
     def test_a_folder_is_no_recording(self, monkeypatch: pytest.MonkeyPatch, tmp_path: Path):
         monkeypatch.chdir(tmp_path)
-        assert "Is a directory" in complaint("replay", ".")
+        Path("a.robobt.arrows").mkdir()
+        assert "Is a directory" in complaint("show", "a.robobt.arrows")
 
 
 @pytest.mark.integration
 class TestLists:
     def test_every_bundled_scenario_is_listed(self):
-        printed = robobt("scenarios").stdout
+        printed = robobt("list", "scenarios").stdout
         assert all(name in printed for name in bundled_scenarios())
-        listed = told("scenarios")["scenarios"]
+        listed = told("list", "scenarios")["scenarios"]
         assert [entry["name"] for entry in listed] == list(bundled_scenarios())
-        explained = help_of("scenarios")
+        explained = help_of("list")
         assert all(key in explained for entry in listed for key in (*entry, *entry["robots"][0]))
 
     def test_one_scenario_is_shown_with_its_robots(self, scenario: Path):
-        printed = " ".join(robobt("scenarios", scenario).stdout.split())
+        printed = " ".join(robobt("show", scenario).stdout.split())
         assert "blue 0 scripted(kick=4.0) at (-2, 0) m, heading 0 rad" in printed
         assert "ball within 0.5 m of (0, 0) m" in printed
         assert "Ends: time_limit 10.0" in printed
 
+    def test_a_scenario_is_copied_whole_to_be_changed(self, tmp_path: Path):
+        copy = tmp_path / "mine.yaml"
+        assert "--out mine.yaml" in robobt("show", "six_v_six").stdout
+        robobt("show", "six_v_six", "--out", copy)
+        assert copy.read_text() == bundled_scenarios()["six_v_six"].read_text()
+        assert (
+            told("show", copy)["scenarios"][0]["robots"]
+            == told("show", "six_v_six")["scenarios"][0]["robots"]
+        )
+
     def test_every_play_is_listed_with_its_parameters(self):
-        printed = robobt("plays").stdout
+        printed = robobt("list", "plays").stdout
         assert "speed: float = 1.0" in printed
-        listed = {entry["name"]: entry for entry in told("plays")["plays"]}
+        listed = {entry["name"]: entry for entry in told("list", "plays")["plays"]}
         assert list(listed) == list(PLAYS)
         speed = listed["scripted"]["parameters"][0]
         assert speed == {"name": "speed", "type": "float", "required": False, "default": 1.0}
 
     def test_every_skill_is_listed_with_what_it_reads_and_writes(self):
-        robobt("skills")
-        listed = {entry["name"]: entry for entry in told("skills")["skills"]}
+        robobt("list", "skills")
+        listed = {entry["name"]: entry for entry in told("list", "skills")["skills"]}
         assert list(listed) == list(SKILLS)
         assert listed["KickToTarget"]["reads"] == list(SKILLS["KickToTarget"].reads)
         assert all(entry["description"] for entry in listed.values())
 
     def test_every_rater_is_listed_with_its_settings_and_what_they_mean(self):
-        assert "full_angle: float = 0.3  free angle that scores 1 [rad]" in robobt("raters").stdout
-        listed = {entry["name"]: entry for entry in told("raters")["raters"]}
+        assert "full_angle: float = 0.3  free angle that scores 1 [rad]" in robobt("list", "raters").stdout
+        listed = {entry["name"]: entry for entry in told("list", "raters")["raters"]}
         assert list(listed) == list(RATERS)
         assert {"name": "spacing", "type": "float", "required": False, "default": 0.02} in listed["gaussian"][
             "parameters"
         ]
 
     def test_every_policy_is_listed(self):
-        assert "Drive to the place beside the ball" in robobt("policies").stdout
-        assert [entry["name"] for entry in told("policies")["policies"]] == list(POLICIES)
+        assert "Drive to the place beside the ball" in robobt("list", "policies").stdout
+        assert [entry["name"] for entry in told("list", "policies")["policies"]] == list(POLICIES)
 
-    @pytest.mark.parametrize("kind", ["plays", "skills", "raters", "policies"])
+    @pytest.mark.parametrize("kind", ["plays", "skills", "raters", "policies", "tasks", "models"])
     def test_every_key_is_in_the_help(self, kind: str):
-        printed = told(kind)
-        explained = help_of(kind)
+        printed = told("list", kind)
+        explained = help_of("list")
         assert all(key in explained for key in (*printed, *printed[kind][0]))
         assert printed["problems"] == []
 
-    @pytest.mark.parametrize("kind", ["plays", "skills", "raters", "policies"])
+    @pytest.mark.parametrize("kind", ["skill", "rater", "policy", "play", "task"])
     def test_a_name_that_is_none_is_told_with_those_there_are(self, kind: str):
-        assert "is called 'nothing'; there are" in " ".join(
-            complaint(kind, "nothing", code=2).replace("│", " ").split()
-        )
+        said = complaint("show", "nothing", "--kind", kind, code=2)
+        assert "is called 'nothing'; there are" in " ".join(said.split())
+
+    def test_a_name_of_several_things_asks_which(self):
+        said = complaint("show", "attack_main", code=2) if "attack_main" in bundled_scenarios() else ""
+        with temporarily(PLAYS):
+            PLAYS.register("six_v_six")(PLAYS["stand_still"])
+            said = complaint("show", "six_v_six", code=2)
+            assert "is a play and a scenario; choose with --kind" in " ".join(said.split())
+            assert "blue 0" in robobt("show", "six_v_six", "--kind", "scenario").stdout
 
     def test_what_is_wrong_with_another_package_is_a_warning(self, monkeypatch: pytest.MonkeyPatch):
         problem = "skill 'Bad' (bad:Bad) of the distribution bad cannot be used: RuntimeError: no"
         monkeypatch.setitem(SKILLS._problems, "Bad", problem)
-        result = robobt("skills", "Stop")
+        result = robobt("show", "Stop")
         assert result.stderr == f"robobt: {problem}\n"
         assert "Stop" in result.stdout
-        assert told("skills")["problems"] == [problem]
+        assert told("list", "skills")["problems"] == [problem]
 
     def test_a_name_that_another_package_failed_to_bring_is_told_with_the_reason(
         self, monkeypatch: pytest.MonkeyPatch, tmp_path: Path, scenario: Path
@@ -352,22 +368,22 @@ class TestLists:
         played["robots"]["blue"][0].update(play="Bad", params={})
         scenario.write_text(write_yaml(played))
         for arguments, code in (
-            (("plays", "Bad"), 2),
-            (("tree", "Bad"), 2),
-            (("tree", tree), 1),
+            (("show", "Bad"), 2),
+            (("show", "Bad", "--kind", "play"), 2),
+            (("show", tree), 1),
             (("match", scenario), 1),
         ):
             said = " ".join(complaint(*arguments, code=code).replace("│", " ").split())
             assert "of the distribution bad cannot be used: RuntimeError: no" in said, arguments
 
     def test_what_a_file_of_the_users_registers_is_listed(self, mine: Path):
-        assert "Nothing at all." in robobt("plays", "idle", "--import", mine).stdout
-        (listed,) = told("skills", "Idle", "--import", mine)["skills"]
+        assert "Nothing at all." in robobt("list", "plays", "--import", mine).stdout
+        (listed,) = told("show", "Idle", "--import", mine)["skills"]
         assert listed["description"] == "Does nothing."
 
     def test_one_can_be_looked_at_alone(self):
-        assert len(told("plays", "goalkeeper")["plays"]) == 1
-        printed = robobt("skills", "KickToTarget").stdout
+        assert len(told("show", "KickToTarget")["skills"]) == 1
+        printed = robobt("show", "KickToTarget").stdout
         assert "KickToTarget" in printed
         assert "DribbleTo" not in printed
 
@@ -375,35 +391,41 @@ class TestLists:
 @pytest.mark.integration
 class TestTree:
     def test_it_is_shown_as_text(self):
-        printed = robobt("tree", "goalkeeper").stdout
+        printed = robobt("show", "goalkeeper").stdout
         assert "ShotComing" in printed
 
     def test_a_terminal_that_lacks_a_sign_is_shown_another(self):
-        result = CliRunner(charset="ascii").invoke(app, ["tree", "goalkeeper"])
+        result = CliRunner(charset="ascii").invoke(app, ["show", "goalkeeper"])
         assert result.exit_code == 0, result.output
         assert "?" in result.stdout
 
     def test_it_is_drawn(self, tmp_path: Path):
         svg, dot = tmp_path / "tree.svg", tmp_path / "tree.dot"
-        robobt("tree", "goalkeeper", "--svg", svg, "--dot", dot, "--param", "speed=0.5")
+        robobt("show", "goalkeeper:speed=0.5", "--out", svg)
+        robobt("show", "goalkeeper", "--out", dot)
         assert svg.read_text().startswith("<svg")
         assert dot.read_text().startswith("digraph")
 
     @pytest.mark.parametrize(
         ("arguments", "said"),
         [
-            (["nothing"], "no play is called 'nothing'; there are"),
-            (["scripted", "-p", "speed"], "takes name=value"),
-            (["scripted", "-p", "sped=1"], "scripted has no such parameter"),
-            (["scripted", "-p", "speed=fast"], "should be a valid number"),
-            (["scripted", "-p", "speed=["], "speed: expected the node content"),
+            (["nothing"], "nothing is called 'nothing'"),
+            (["nothing", "--kind", "play"], "no play is called 'nothing'; there are"),
+            (["scripted:speed"], "takes name=value"),
+            (["scripted:sped=1"], "scripted has no such parameter"),
+            (["scripted:speed=fast"], "should be a valid number"),
+            (["scripted:speed=["], "speed: expected the node content"),
+            (["scripted", "--out", "tree.gif"], "takes a name that ends in .svg, .dot, .yaml, .xml"),
+            (["scripted", "--robot", "blue 0"], "is for a recording, and this is a play"),
+            (["KickToTarget", "--lint"], "is for a play, and this is a skill"),
+            (["KickToTarget", "--out", "x.svg"], "does nothing here: a skill is only printed"),
         ],
     )
     def test_usage_errors_say_what_there_is(self, arguments: list[str], said: str):
-        assert said in " ".join(complaint("tree", *arguments, code=2).replace("│", " ").split())
+        assert said in " ".join(complaint("show", *arguments, code=2).replace("│", " ").split())
 
     def test_it_is_one_object_in_json(self):
-        printed = told("tree", "goalkeeper")
+        printed = told("show", "goalkeeper")
         assert printed["nodes"][0] == {"path": "goalkeeper", "type": "Selector", "depth": 0}
         assert printed["nodes"][2]["path"] == "goalkeeper/aim/BallAimedAtGoal"
         assert printed["nodes"][2]["depth"] == 2
@@ -412,50 +434,50 @@ class TestTree:
         path = tmp_path / "mine.yaml"
         tree = {"Repeat": {"name": "again", "num_success": -1, "child": "KickToTarget"}}
         path.write_text(write_yaml({"play": "mine", "tree": tree}))
-        printed = robobt("tree", path, "--lint", code=1).stdout
+        printed = robobt("show", path, "--lint", code=1).stdout
         assert "again: repeats its child for ever [unbounded]" in printed
         assert (
             "again/KickToTarget: reads 'shot' or 'pass_', but no other node of the tree writes it" in printed
         )
-        found = json.loads(robobt("tree", path, "--lint", "--json", code=1).stdout)
-        assert "reads 'shot' or 'pass_', but no other node" in robobt("tree", path).stderr
+        found = json.loads(robobt("show", path, "--lint", "--json", code=1).stdout)
+        assert "reads 'shot' or 'pass_', but no other node" in robobt("show", path).stderr
         assert found["findings"][0]["rule"] == "unbounded"
         assert len(found["wiring"]) == 1
-        explained = help_of("tree")
+        explained = help_of("show")
         assert all(key in explained for key in (*found, *found["findings"][0], *found["nodes"][0]))
 
     def test_a_tree_without_mistakes_is_told_too(self):
-        assert robobt("tree", "goalkeeper", "--lint").stdout == "Nothing found.\n"
+        assert robobt("show", "goalkeeper", "--lint").stdout == "Nothing found.\n"
 
     def test_what_its_nodes_do_in_a_match_is_counted(self, scenario: Path):
-        printed = robobt("tree", "scripted", "--statistics", scenario).stdout
+        printed = robobt("show", "scripted", "--statistics", scenario).stdout
         assert printed.startswith("blue 0\nnode ")
-        counted = told("tree", "scripted", "--statistics", scenario, "--seed", "3")
+        counted = told("show", "scripted", "--statistics", scenario, "--seed", "3")
         assert (counted["scenario"], counted["seed"]) == ("test", 3)
         (node,) = counted["robots"]["blue 0"]
         assert node["runs"] == node["ticks"] > 0
-        explained = help_of("tree")
+        explained = help_of("show")
         assert all(key in explained for key in (*counted, *node))
 
     def test_counting_needs_a_robot_with_the_play(self, scenario: Path):
-        assert "no robot plays 'goalkeeper'" in complaint("tree", "goalkeeper", "--statistics", scenario)
+        assert "no robot plays 'goalkeeper'" in complaint("show", "goalkeeper", "--statistics", scenario)
 
     def test_a_seed_is_for_counting(self):
-        assert "is for --statistics" in complaint("tree", "goalkeeper", "--seed", "1", code=2)
+        assert "is for --statistics" in complaint("show", "goalkeeper", "--seed", "1", code=2)
 
     def test_a_play_of_the_users_own_file(self, mine: Path):
-        assert "Idle" in robobt("tree", "idle", "--import", mine).stdout
+        assert "Idle" in robobt("show", "idle", "--import", mine).stdout
 
     def test_what_is_wrong_with_that_file_is_told_with_its_line(self, mine: Path):
         mine.write_text("x = 1\nx.y\n")
-        said = complaint("tree", "idle", "--import", mine)
+        said = complaint("show", "idle", "--import", mine)
         assert said == f"robobt: {mine}:2: AttributeError: 'int' object has no attribute 'y'\n"
 
 
 class TestErrors:
     def test_a_command_that_has_moved_says_how_it_is_run_now(self):
-        said = complaint("bench", "tree", "--json", code=2)
-        assert said.endswith("in a clone of the repository run python -m benchmarks tree --json\n")
+        run = subprocess.run([sys.executable, "-m", "robobt", "tree", "x"], capture_output=True, text=True)
+        assert (run.returncode, run.stderr) == (2, "'robobt tree' is 'robobt show' now\n")
 
     def test_a_missing_scenario_is_named_and_those_there_are(self):
         assert complaint("match", "nowhere").startswith("robobt: nowhere: no such file or bundled scenario; ")
@@ -482,17 +504,17 @@ class TestErrors:
         assert "name" in complaint("match", scenario)
 
     def test_a_file_that_is_no_recording(self, scenario: Path):
-        assert complaint("replay", scenario).startswith(f"robobt: {scenario}")
+        assert complaint("show", scenario).startswith(f"robobt: {scenario}")
 
     def test_a_file_that_is_not_there(self):
-        assert "nowhere.jsonl" in complaint("replay", "nowhere.jsonl")
+        assert "nowhere.jsonl" in complaint("show", "nowhere.jsonl")
 
     def test_a_place_that_cannot_be_written(self, scenario: Path, tmp_path: Path):
         (tmp_path / "file").write_text("")
         assert str(tmp_path / "file") in complaint("match", scenario, "--out", tmp_path / "file" / "x.jsonl")
 
     def test_a_trial_that_is_not_played_cannot_be_recorded(self, scenario: Path):
-        said = complaint("match", scenario, "-n", "2", "--record", "7", code=2)
+        said = complaint("match", scenario, "-n", "2", "--record-trial", "7", code=2)
         assert "there is no trial 7; they are 0 to 1" in said
 
     @pytest.mark.parametrize(
@@ -504,6 +526,12 @@ class TestErrors:
     def test_debug_shows_where(self):
         result = CliRunner().invoke(app, ["--debug", "match", "nowhere"])
         assert type(result.exception).__name__ == "ScenarioError"
+        assert "--debug" in help_of()
+
+    def test_debug_stands_behind_the_command_too(self):
+        command = [sys.executable, "-m", "robobt", "match", "nowhere", "--debug"]
+        run = subprocess.run(command, capture_output=True, text=True, check=False)
+        assert "Traceback" in run.stderr
 
 
 def test_models_lie_where_the_package_looks_for_them():
@@ -520,8 +548,8 @@ def test_models_are_listed_where_there_is_no_folder_of_ones_own(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    listed = told("models")
+    listed = told("list", "models")
     assert listed["problems"] == []
     assert len(listed["models"]) == len([*models_folder().glob("*.pt")])
     monkeypatch.setenv("ROBOBT_MODELS", "nowhere")
-    assert "nowhere: there is no such file" in robobt("models", code=1).output
+    assert "nowhere: there is no such file" in robobt("list", "models", code=1).output

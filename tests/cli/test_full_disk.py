@@ -20,10 +20,10 @@ MATCH = ["match", "striker_vs_goalie", "-n", "1", "--set", "ends.time_limit=2", 
 OUTPUTS = [
     ([*MATCH, "{}/a.html"], 50_000),
     ([*MATCH, "{}/a.robobt.arrows"], 5_000),
-    (["tree", "attack_main", "--svg", "{}/a.svg"], 1000),
-    (["tree", "attack_main", "--xml", "{}/a.xml"], 1000),
-    (["replay", "{recording}", "--gif", "{}/a.gif"], 1000),
-    (["replay", "{recording}", "--html", "{}/a.html"], 1000),
+    (["show", "attack_main", "--out", "{}/a.svg"], 1000),
+    (["show", "attack_main", "--out", "{}/a.xml"], 1000),
+    (["show", "{recording}", "--out", "{}/a.gif"], 1000),
+    (["show", "{recording}", "--out", "{}/a.html"], 1000),
     (["record", "export", "{recording}", "--btlog", "--robot", "blue 1", "--out", "{}/a.btlog"], 200),
 ]
 

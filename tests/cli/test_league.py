@@ -61,7 +61,7 @@ def test_serve_says_what_it_served_and_logs_it(tmp_path: Path) -> None:
     assert printed["packets"]["grsim"]["accepted"] == 0
     assert {record.kind for record in read_log(log)} == {3, 4, 5}
     page = tmp_path / "game.html"
-    assert robobt("replay", log) == f"Replay: {page}\n"
+    assert robobt("show", log) == f"Page: {page}\n"
     assert "<html" in page.read_text()
 
 
@@ -154,7 +154,7 @@ def test_a_port_that_is_taken_is_one_plain_line() -> None:
             "webots: a world of the league is league://SIMULATOR",
         ),
         (["match", "striker_vs_goalie", "--world", "nowhere.log"], "nowhere.log: No such file or directory"),
-        (["replay", "nowhere.log"], "nowhere.log: No such file or directory"),
+        (["show", "nowhere.log"], "nowhere.log: No such file or directory"),
     ],
 )
 def test_what_is_wrong_is_one_plain_line(arguments: list[str], problem: str) -> None:
@@ -166,7 +166,7 @@ def test_what_is_wrong_is_one_plain_line(arguments: list[str], problem: str) -> 
 def test_a_spoilt_log_is_named(tmp_path: Path) -> None:
     path = tmp_path / "spoilt.log"
     path.write_bytes(b"nothing of the kind")
-    assert f"robobt: {path}: is not a log" in robobt("replay", path, code=1)
+    assert f"robobt: {path}: is not a log" in robobt("show", path, code=1)
 
 
 def test_log_writes_what_is_heard(tmp_path: Path) -> None:

@@ -45,13 +45,13 @@ def seen_by(monkeypatch: pytest.MonkeyPatch, look: Look, *command: str, end: boo
 
 def test_what_was_played_live_is_shown_again(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     path = str(tmp_path / "m.robobt.arrows")
-    played = ("live", "striker_vs_goalie", "--record", path, "--seed", "4")
+    played = ("match", "striker_vs_goalie", "--live", "--record", path, "--seed", "4")
     live = seen_by(monkeypatch, lambda it: len(it.chunks) > 5 and it.state, *played)
     assert live.hello["scenario"] == "striker_vs_goalie"
     assert live.state["movable"]
     recorded = load_recording(path)
     assert len(recorded) > 5
-    again = seen_by(monkeypatch, lambda it: it.state.get("over"), "replay", path, "--live")
+    again = seen_by(monkeypatch, lambda it: it.state.get("over"), "show", path, "--live")
     assert again.hello["seed"] == live.hello["seed"]
     assert again.state["span"] == [recorded.times[0], recorded.times[-1]]
     assert not again.state["movable"]

@@ -14,24 +14,24 @@ from robobt.cli.outputs import make_folders
 from robobt.config.errors import ConfigError
 from tests.match.recording.made_recording import record
 
-OUTPUTS = {"out", "picture", "replay", "html", "gif", "png", "svg", "dot", "yaml", "xml"}
+OUTPUTS = {"out", "record", "html", "log"}
 """What parameters for outputs are called."""
 
 COMMANDS = [
     place
     for commands in (cli._COMMANDS, *[commands for _, commands in cli._GROUPS.values()])
-    for place in commands.values()
+    for place, _ in commands.values()
 ]
 
 
 def test_a_folder_that_is_not_there_is_made_and_told_with_its_option(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    make_folders({"--replay": tmp_path / "a" / "b" / "x.html", "--out": None, "--svg": tmp_path / "x.svg"})
+    make_folders({"--record": tmp_path / "a" / "b" / "x.html", "--out": None, "--svg": tmp_path / "x.svg"})
     assert list(tmp_path.iterdir()) == [tmp_path / "a"]
     assert list((tmp_path / "a" / "b").iterdir()) == []
     told = capsys.readouterr().err
-    assert told.startswith("robobt: --replay: made the folder ")
+    assert told.startswith("robobt: --record: made the folder ")
     assert told.count("made") == 1
     make_folders({"--out": tmp_path / "runs" / "one"}, folders=True)
     assert list((tmp_path / "runs").iterdir()) == []
@@ -67,9 +67,9 @@ def test_every_command_with_an_output_keeps_this_rule(place: str) -> None:
 @pytest.mark.parametrize(
     "arguments",
     [
-        ["match", "striker_vs_goalie", "-n", "1", "--set", "ends.time_limit=0.1", "--replay", "{}/x.html"],
-        ["tree", "attack_main", "--yaml", "{}/x.yaml"],
-        ["replay", "{recording}", "--html", "{}/x.html"],
+        ["match", "striker_vs_goalie", "-n", "1", "--set", "ends.time_limit=0.1", "--record", "{}/x.html"],
+        ["show", "attack_main", "--out", "{}/x.yaml"],
+        ["show", "{recording}", "--out", "{}/x.html"],
         ["record", "case", "{recording}", "--tick", "3", "--robot", "blue 1", "--out", "{}/x.yaml"],
     ],
 )

@@ -14,7 +14,7 @@ from robobt.learning.training.settings import load_settings
 
 
 def rate(*arguments):
-    return CliRunner().invoke(app, ["rate", *map(str, arguments)])
+    return CliRunner().invoke(app, ["evaluate", "--round-robin", *map(str, arguments)])
 
 
 def test_a_runs_policies_are_rated_beside_scripts(tmp_path):

@@ -26,9 +26,9 @@ HEAVY = {
     ("command", "needed"),
     [
         ("--help", set()),
-        ("scenarios", {"pydantic"}),
-        ("scenarios --json", {"numpy", "pydantic", "numba"}),
-        ("plays", {"numpy", "pydantic", "numba"}),
+        ("list scenarios", {"pydantic"}),
+        ("list scenarios --json", {"numpy", "pydantic", "numba"}),
+        ("list plays", {"numpy", "pydantic", "numba"}),
     ],
 )
 def test_a_list_needs_little(command: str, needed: set[str]) -> None:
@@ -63,7 +63,7 @@ def test_one_command_alone_is_the_same_as_among_all() -> None:
 
 
 @pytest.mark.parametrize(
-    ("typed", "offered"), [("match striker", "striker_vs_goalie"), ("tree attack_m", "attack_main")]
+    ("typed", "offered"), [("match striker", "striker_vs_goalie"), ("show attack_m", "attack_main")]
 )
 def test_a_shell_completes_names(typed: str, offered: str) -> None:
     environment = dict(

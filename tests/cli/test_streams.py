@@ -18,7 +18,7 @@ ROBOBT = [sys.executable, "-m", "robobt"]
 
 
 @pytest.mark.integration
-@pytest.mark.parametrize("arguments", [["plays"], ["plays", "--json"]])
+@pytest.mark.parametrize("arguments", [["list", "plays"], ["list", "plays", "--json"]])
 def test_a_reader_that_has_enough_is_no_failure(arguments: list[str]) -> None:
     reader, writer = os.pipe()
     os.close(reader)
@@ -53,7 +53,7 @@ def test_a_width_that_is_given_counts(given: str) -> None:
 
 
 @pytest.mark.integration
-@pytest.mark.parametrize("arguments", [["scenarios"], ["scenarios", "--help"]])
+@pytest.mark.parametrize("arguments", [["list", "scenarios"], ["list", "--help"]])
 def test_a_width_of_nothing_prints_what_80_columns_print(arguments: list[str]) -> None:
     shown = [
         subprocess.run(
@@ -83,7 +83,7 @@ def test_a_list_of_scenarios_loses_no_text_on_a_narrow_screen(monkeypatch: pytes
 def test_warnings_are_told_but_not_each_failure_of_a_tree() -> None:
     program = (
         "import logging, sys; from robobt.cli import app;"
-        "sys.argv = ['robobt', 'plays']; app(standalone_mode=False);"
+        "sys.argv = ['robobt', 'list', 'plays']; app(standalone_mode=False);"
         "logging.getLogger('robobt.league.wire.links').warning('two senders');"
         "logging.getLogger('robobt.tree.runner').warning('tree stopped')"
     )

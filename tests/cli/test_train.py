@@ -53,7 +53,7 @@ def test_the_seed_of_the_settings_is_the_first_unless_another_is_asked_for(tmp_p
         (["train", "shoot", "--preset", "slow"], "no preset of shoot is called 'slow'"),
         (["train", "shoot", "--set", "agent.tau=7"], "agent.tau"),
         (["train", "shoot", "--set", "tau"], "name=value"),
-        (["demonstrations", "shoot", "--by", "magic", "--out", "x"], "skill or script"),
+        (["record", "demonstrations", "shoot", "--by", "magic", "--out", "x"], "skill or script"),
     ],
 )
 def test_what_is_wrong_is_said_in_a_line(arguments, said, tmp_path, monkeypatch):
@@ -65,12 +65,16 @@ def test_what_is_wrong_is_said_in_a_line(arguments, said, tmp_path, monkeypatch)
 
 
 def test_demonstrations_are_recorded_by_one_command(tmp_path):
-    told = run("demonstrations", "shoot", "--episodes", 5, "--out", tmp_path / "d.parquet", "--json")
+    told = run(
+        "record", "demonstrations", "shoot", "--episodes", 5, "--out", tmp_path / "d.parquet", "--json"
+    )
     assert told.exit_code == 0, told.output
     figures = json.loads(told.stdout)
     assert figures["episodes"] == 5
     recorded = read_demonstrations(tmp_path / "d.parquet")
     assert len(recorded) == figures["steps"]
     assert recorded.about["teacher"] == "skill"
-    spoken = run("demonstrations", "shoot", "-n", 2, "-o", tmp_path / "e.parquet", "--by", "script")
+    spoken = run(
+        "record", "demonstrations", "shoot", "--episodes", 2, "-o", tmp_path / "e.parquet", "--by", "script"
+    )
     assert "2 episodes" in spoken.output

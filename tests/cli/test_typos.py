@@ -18,7 +18,7 @@ TYPOS = [
     ("train go_to_ball --set stpes=10", "--set: stpes: there is no such field; did you mean steps or"),
     ("train go_to_ball --set agent.gama=1", "--set: agent.gama: there is no such field; did you mean gamma?"),
     ("train gotoball", "no task is called 'gotoball'; did you mean go_to_ball"),
-    ("demonstrations shot --out x.parquet", "no task is called 'shot'; did you mean shoot"),
+    ("record demonstrations shot --out x.parquet", "no task is called 'shot'; did you mean shoot"),
     ("train go_to_ball --preset fsat", "did you mean fast?"),
     (MATCH + "--set sede=1", "--set: sede: there is no such field; did you mean seed?"),
     (
@@ -37,12 +37,12 @@ TYPOS = [
     ),
     (MATCH + "--substitute bleu:*=SUCCESS", "--substitute: robots: there is no robot 'bleu'"),
     ("match striker_vs_golie", "did you mean striker_vs_goalie?"),
-    ("skills gotoball", "did you mean GoToBall"),
-    ("raters clearance", "did you mean segment_clearance?"),
-    ("policies geometrical", "did you mean geometric?"),
-    ("plays Attack-Main", "did you mean attack_main"),
-    ("models shot_n", "did you mean shot_nn"),
-    ("tournament atack_main --against attack_nn", "Did you mean attack_main"),
+    ("show gotoball", "did you mean GoToBall"),
+    ("show clearance --kind rater", "did you mean segment_clearance?"),
+    ("show geometrical", "did you mean geometric?"),
+    ("show Attack-Main", "did you mean attack_main"),
+    ("show shot_n", "did you mean shot_nn"),
+    ("tournament run atack_main --against attack_nn", "Did you mean attack_main"),
     ("mtach", "Did you mean 'match'?"),
 ]
 

@@ -62,8 +62,8 @@ def test_a_light_installation_plays() -> None:
         ("train go_to_ball", "learn"),
         ("serve striker_vs_goalie --seconds 1", "league"),
         ("collect shots -n 1 --out x.parquet", "shots"),
-        ("live six_v_six", "live"),
-        ("tournament team_player field_player", "tournament"),
+        ("match six_v_six --live", "live"),
+        ("tournament run team_player field_player", "tournament"),
     ],
 )
 def test_what_it_cannot_do_names_the_extra(command: str, extra: str, tmp_path: Path) -> None:

@@ -22,7 +22,7 @@ def recording(tmp_path_factory: pytest.TempPathFactory) -> Recording:
 
 
 def replay(recording: Recording, *arguments: str | Path) -> str:
-    done = CliRunner().invoke(app, ["replay", str(recording.path), *map(str, arguments)])
+    done = CliRunner().invoke(app, ["show", str(recording.path), *map(str, arguments)])
     assert done.exit_code == 0, done.output
     return done.output
 
@@ -87,7 +87,7 @@ def test_what_cannot_be_shown_is_said(
     recording: Recording, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, arguments: list[str], said: str
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    done = CliRunner().invoke(app, ["replay", str(recording.path), *arguments])
+    done = CliRunner().invoke(app, ["show", str(recording.path), *arguments])
     assert done.exit_code != 0
     assert said in " ".join(f"{done.output} {done.exception}".replace("│", " ").split())
     assert not list(tmp_path.iterdir())

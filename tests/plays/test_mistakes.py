@@ -82,7 +82,7 @@ def messages(body: str, number: int, path: Path) -> tuple[str, str]:
     """Return what `robobt tree` and a scenario say about a play with this body."""
     path.write_text(FILE.format(number=number, line=body))
     with temporarily(PLAYS):
-        shown = CliRunner().invoke(app, ["tree", f"broken_{number}", "--import", str(path)])
+        shown = CliRunner().invoke(app, ["show", f"broken_{number}", "--import", str(path)])
         with pytest.raises(ScenarioError) as caught:
             load_scenario("striker_vs_goalie").with_robot("blue 0", play=f"broken_{number}", params={})
     assert shown.exit_code == 1

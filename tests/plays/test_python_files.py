@@ -168,7 +168,7 @@ def test_two_states_of_a_team_are_told_with_the_command_in_which_they_meet(
     write()
     (tmp_path / "old").mkdir()
     (tmp_path / "old" / "mine.py").write_text((tmp_path / "mine.py").read_text())
-    refused = CliRunner().invoke(app, ["plays", "--import", "mine.py", "--import", "old/mine.py"])
+    refused = CliRunner().invoke(app, ["list", "plays", "--import", "mine.py", "--import", "old/mine.py"])
     told = " ".join(refused.output.split())
     assert refused.exit_code == 1
     assert re.search(r"registered twice: mine\.py:\d+: \w+ and old/mine\.py:\d+: \w+; ", told)

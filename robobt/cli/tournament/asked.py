@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from robobt.cli.common import warn
+from robobt.cli.options import option
 from robobt.cli.scenario_options import parse_play
 
 if TYPE_CHECKING:
@@ -24,32 +25,24 @@ EXITS = ("better", "not better", "undecided")
 ALPHA = BETA = 0.05
 """How often a sequential test may err unless it is told otherwise."""
 
-Alpha = Annotated[float, typer.Option(min=1e-6, max=0.49, help="How often --sprt may call ELO0 better.")]
+Alpha = Annotated[float, option("--alpha", min=1e-6, max=0.49)]
 
-Beta = Annotated[float, typer.Option(min=1e-6, max=0.49, help="How often --sprt may call ELO1 not better.")]
+Beta = Annotated[float, option("--beta", min=1e-6, max=0.49)]
 
-ScenarioOption = Annotated[
-    str, typer.Option(help="A scenario file, or the name of a bundled one, for field, starts and rules.")
-]
+ScenarioOption = Annotated[str, option("--scenario")]
 
 OutOption = Annotated[
     Path | None,
-    typer.Option(
+    option(
         "--out",
-        help="Keep every match in this file (SQLite); the same command goes on with what it lacks, also "
-        "while another one does.",
+        ": a file that keeps every match (SQLite). The same command plays what it lacks, also while another "
+        "one does",
+        metavar="FILE",
     ),
 ]
 
 WorkersOption = Annotated[
-    int | None,
-    typer.Option(
-        "--workers",
-        "-w",
-        min=0,
-        max=256,
-        help="Worker processes; by default one a core. 0 plays in the command's own process.",
-    ),
+    int | None, option("--workers", "; 0 plays in the command's own process", min=0, max=256)
 ]
 
 

@@ -1,4 +1,4 @@
-"""``robobt results``: what a tournament's store holds."""
+"""``robobt tournament results``: what a tournament's store holds."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ import typer
 from rich.markup import escape
 
 from robobt.cli.common import Json, console, print_json, say, table
+from robobt.cli.options import option
 from robobt.cli.tournament.tables import lead_text, print_encounters, print_standings
 from robobt.config.errors import unknown_name
 
@@ -18,51 +19,24 @@ if TYPE_CHECKING:
     from robobt.tournament.played import PlayedMatch
     from robobt.tournament.standings import Encounter, Paired
 
-_NAME = "NAME"
-
 
 def results(
     store: Annotated[Path, typer.Argument(help="A tournament's store (SQLite).")],
-    entrant: Annotated[
-        list[str] | None,
-        typer.Option(
-            "--entrant", metavar=_NAME, help="Only matches of this one; given twice or more, among these."
-        ),
-    ] = None,
-    outcome: Annotated[
-        str | None, typer.Option(help="Only matches that ended so, as full_time or forfeit_blue.")
-    ] = None,
-    lost_by: Annotated[
-        str | None, typer.Option("--lost-by", metavar=_NAME, help="Only matches that this one lost.")
-    ] = None,
-    matches: Annotated[
-        bool, typer.Option("--matches", help="List the matches instead of summing them up.")
-    ] = False,
-    compare: Annotated[
-        tuple[str, str] | None,
-        typer.Option(
-            metavar=f"{_NAME} {_NAME}",
-            help="Compare two entrants: against each other, and against the opponents that both have met.",
-        ),
-    ] = None,
-    merge: Annotated[
-        list[Path] | None,
-        typer.Option(
-            "--merge",
-            metavar="FILE",
-            help="First take over what another store of the same tournament holds, as from another machine; "
-            "may be given often.",
-        ),
-    ] = None,
+    entrant: Annotated[list[str] | None, option("--entrant")] = None,
+    outcome: Annotated[str | None, option("--outcome", ", as full_time or forfeit_blue")] = None,
+    lost_by: Annotated[str | None, option("--lost-by")] = None,
+    matches: Annotated[bool, option("--matches", " instead of the standings")] = False,
+    compare: Annotated[tuple[str, str] | None, option("--compare")] = None,
+    merge: Annotated[list[Path] | None, option("--merge")] = None,
     as_json: Json = False,
 ) -> None:
     """Sum up, list, compare and merge what tournaments have stored.
 
     Keys of --json: played (what was played, by field), merged (matches that were new); then either matches,
-    each with the columns of the table; or compare: met (as an encounter of 'robobt tournament'; null if they
-    have not), and others: opponents, rounds, lead (goals a match by which the first did better), low and high
-    (95 %), ahead and behind (rounds in which the first made more and fewer points), p (exact); or the keys
-    of 'robobt tournament': matches, distinct, standings, encounters.
+    each with the columns of the table; or compare: met (as an encounter of 'robobt tournament run'; null
+    if they have not), and others: opponents, rounds, lead (goals a match by which the first did better),
+    low and high (95 %), ahead and behind (rounds in which the first made more and fewer points), p (exact);
+    or the keys of 'robobt tournament run': matches, distinct, standings, encounters.
     """
     from robobt.tournament.standings import paired, standings_of
     from robobt.tournament.store import Store

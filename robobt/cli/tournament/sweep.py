@@ -1,4 +1,4 @@
-"""``robobt sweep``: tune the parameters of a play."""
+"""``robobt tournament sweep``: tune the parameters of a play."""
 
 from __future__ import annotations
 
@@ -23,13 +23,13 @@ from robobt.cli.common import (
     table,
     warn,
 )
+from robobt.cli.options import option
 from robobt.cli.outputs import make_folders
 from robobt.cli.refereeing import Refereeing
 from robobt.cli.scenario_options import Changes, parse_play
 from robobt.cli.tournament.asked import (
     ALPHA,
     BETA,
-    ENTRANT,
     EXITS,
     Alpha,
     Beta,
@@ -56,44 +56,24 @@ _VARY = "NAME=VALUES"
 class Tried:
     """What is tried."""
 
-    candidates: Annotated[
-        int, typer.Option(min=1, max=10_000, help="How many sets of parameters are tried.")
-    ] = 24
-    at_once: Annotated[
-        int,
-        typer.Option(
-            "--at-once",
-            min=1,
-            max=256,
-            help="How many of them play at a time; the next ones are proposed by what these have done.",
-        ),
+    candidates: Annotated[int, option("--candidates", min=1, max=10_000)] = 24
+    concurrent: Annotated[
+        int, option("--concurrent", "; their results decide which are tried next", min=1, max=256)
     ] = 4
-    rounds: Annotated[
-        int,
-        typer.Option(
-            "--rounds", "-n", min=1, max=10_000, help="Rounds of two matches that a candidate plays at most."
-        ),
-    ] = 20
+    rounds: Annotated[int, option("--rounds", " with each candidate at most", min=1, max=10_000)] = 20
 
 
 @dataclass(frozen=True)
 class Confirmation:
     """The test of the best candidate, on other seeds."""
 
-    sprt: Annotated[
-        tuple[float, float],
-        typer.Option(
-            metavar="ELO0 ELO1", help="What the best is tested for, on other seeds; as of robobt tournament."
-        ),
-    ] = (0.0, 30.0)
+    sprt: Annotated[tuple[float, float], option("--sprt", ", for the best candidate on other seeds")] = (
+        0.0,
+        30.0,
+    )
     alpha: Alpha = ALPHA
     beta: Beta = BETA
-    confirm_rounds: Annotated[
-        int,
-        typer.Option(
-            "--confirm-rounds", min=0, max=100_000, help="Rounds of that test at most; 0 leaves it out."
-        ),
-    ] = 5000
+    confirm_rounds: Annotated[int, option("--confirm-rounds", min=0, max=100_000)] = 5000
 
 
 @dataclass(frozen=True)
@@ -115,16 +95,11 @@ def sweep(
     ],
     vary: Annotated[
         list[str],
-        typer.Option(
-            "--vary",
-            metavar=_VARY,
-            help="A parameter and what is tried: rater=nn_filtered,open_angle, or for numbers a range, "
-            "shot_distance=2:6; may be given often.",
-        ),
+        option("--vary", ": rater=nn_filtered,open_angle, or a range of numbers, shot_distance=2:6"),
     ],
     against: Annotated[
         str | None,
-        typer.Option(metavar=ENTRANT, help="Whom all play; by default the play as it is without --vary."),
+        option("--against", "; by default the play itself, without what --vary changes"),
     ] = None,
     scenario: ScenarioOption = "six_v_six",
     *,
@@ -144,10 +119,10 @@ def sweep(
     did better at all), 2 for undecided.
 
     Keys of --json: scenario, seed, referee, against; candidates in the order in which they were proposed:
-    number, name (an entrant of 'robobt tournament'), params, rounds, score (0 to 1 in the mean), lead
+    number, name (an entrant of 'robobt tournament run'), params, rounds, score (0 to 1 in the mean), lead
     (goals a match), stopped, problem, errors (ticks in which a tree failed), first_error; best, one of them
     or null; failed: what kept matches from being played, by match; interrupted; sprt, null without: as of
-    'robobt tournament'.
+    'robobt tournament run'.
     """
     from robobt.plays.files import is_play_file, problem_with_play
     from robobt.tournament.sweeps.sweep import Sweep
@@ -166,7 +141,7 @@ def sweep(
         tuple([read_varied(name, text) for text in vary]),
         parse_entrant(against or play),
         tried.candidates,
-        tried.at_once,
+        tried.concurrent,
         tried.rounds,
         base.seed if running.seed is None else running.seed,
         referee=referees,

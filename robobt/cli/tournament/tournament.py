@@ -1,4 +1,4 @@
-"""``robobt tournament``: teams against each other, and who is better."""
+"""``robobt tournament run``: teams against each other, and who is better."""
 
 from __future__ import annotations
 
@@ -23,6 +23,7 @@ from robobt.cli.common import (
     say,
     warn,
 )
+from robobt.cli.options import option
 from robobt.cli.outputs import make_folders
 from robobt.cli.refereeing import Refereeing
 from robobt.cli.scenario_options import Changes
@@ -72,11 +73,7 @@ class Test:
 
     sprt: Annotated[
         tuple[float, float] | None,
-        typer.Option(
-            metavar="ELO0 ELO1",
-            help="Play until it is clear whether the entrant is stronger than --against: not better is by "
-            "ELO0 points or less, better by ELO1 or more.",
-        ),
+        option("--sprt", ", by points of Elo; play until that is decided, against --against"),
     ] = None
     alpha: Alpha = ALPHA
     beta: Beta = BETA
@@ -101,15 +98,13 @@ class Kept:
     """What is kept of the matches."""
 
     out: OutOption = None
-    html: Annotated[Path | None, typer.Option("--html", help="Write the report, one page, to this file.")] = (
-        None
-    )
-    record: Annotated[
+    html: Annotated[Path | None, option("--html")] = None
+    keep: Annotated[
         KeepOption | None,
-        typer.Option(
-            "--record",
-            help="Keep recordings beside --out: the match in which the first entrant does worst against each "
-            "other, those it loses, or all.",
+        option(
+            "--recordings",
+            " beside --out: the match that goes worst for the first entrant against each other one, those it "
+            "loses, or all",
         ),
     ] = None
 
@@ -124,11 +119,13 @@ class Kept:
         if self.html is not None and self.out is not None and self.html.resolve() == self.out.resolve():
             there = f"would take the place of the store {self.out}"
             raise typer.BadParameter(there, param_hint="--html")
-        if self.record is None:
+        if self.keep is None:
             return None
         if self.out is None:
-            raise typer.BadParameter("needs --out, beside which recordings are kept", param_hint="--record")
-        return Recordings(self.out.with_suffix(".recordings"), Keep(self.record.value), first)
+            raise typer.BadParameter(
+                "needs --out, beside which recordings are kept", param_hint="--recordings"
+            )
+        return Recordings(self.out.with_suffix(".recordings"), Keep(self.keep.value), first)
 
 
 @dataclass(frozen=True)
@@ -137,13 +134,12 @@ class Running:
 
     seed: Seed = None
     workers: WorkersOption = None
-    speed: Annotated[
-        float,
-        typer.Option(min=0.05, max=20.0, help="Simulated time over real time in matches with programs."),
+    speed_factor: Annotated[
+        float, option("--speed-factor", " in matches with programs", min=0.05, max=20.0)
     ] = 1.0
 
 
-def tournament(
+def run(
     entrants: Annotated[
         list[str],
         typer.Argument(
@@ -154,20 +150,16 @@ def tournament(
     ],
     against: Annotated[
         str | None,
-        typer.Option(
-            metavar=ENTRANT, help="Let all meet this one only; by default everybody meets everybody."
-        ),
+        option("--against", "; by default all meet each other"),
     ] = None,
     scenario: ScenarioOption = "six_v_six",
     rounds: Annotated[
         int | None,
-        typer.Option(
+        option(
             "--rounds",
-            "-n",
+            f" in each pairing; by default {_ROUNDS}, with --sprt at most {_MOST_ROUNDS}",
             min=1,
             max=100_000,
-            help="How often each pairing meets, each time from either side with the same seed: two matches. "
-            f"By default {_ROUNDS}; with --sprt {_MOST_ROUNDS} at most.",
         ),
     ] = None,
     *,
@@ -212,10 +204,12 @@ def tournament(
         base.seed if running.seed is None else running.seed,
         None if against is None else teams[texts.index(against)].name,
         referees,
-        speed=running.speed,
+        speed=running.speed_factor,
     )
-    if running.speed != 1.0 and not any(team.program for team in teams):
-        raise typer.BadParameter("is for matches with programs, and none takes part", param_hint="--speed")
+    if running.speed_factor != 1.0 and not any(team.program for team in teams):
+        raise typer.BadParameter(
+            "is for matches with programs, and none takes part", param_hint="--speed-factor"
+        )
     make_folders({"--out": kept.out, "--html": kept.html})
     result = None if asked is None else RunningTest(asked, *plan.pairings[0])
     played = _played(plan, running.workers, kept.out, recordings, result)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import re
 from collections.abc import Sequence
 from pathlib import Path
@@ -16,9 +15,10 @@ from robobt.config.commit import source_commit
 from robobt.learning.agents.networks import one_thread, policy_of
 from robobt.learning.envs import make_task
 from robobt.learning.training.evaluation import Evaluation
+from robobt.learning.training.fresh_starts import best_seed
 from robobt.learning.training.problems import problem_of
 from robobt.learning.training.results import TrainResult
-from robobt.learning.training.run_folder import RESULT, check_task, load_run
+from robobt.learning.training.run_folder import check_task, load_run
 from robobt.learning.training.settings import evaluated_on
 from robobt.models.card import MODEL_NAME, Measured, ModelCard, ObservationCard, action_outputs
 from robobt.models.export import export_model, refuse_to_replace
@@ -59,7 +59,7 @@ def export_run(
             f"{name!r} is no name for a model: up to 64 letters, digits, dots, dashes and underscores, "
             "without the file's suffix"
         )
-    result = load_run(_best_seed(Path(run)))
+    result = load_run(best_seed(Path(run)))
     settings = result.settings
     check_task(Path(run), settings, result.figures.get("task_digest", ""))
     called = name or f"{settings.task.rpartition(':')[2]}_{settings.learner}"
@@ -96,15 +96,6 @@ def export_run(
         created_by=f"robobt export {__version__} {source_commit()}".rstrip(),
     )
     return export_model(result.actor, card, Path(folder), formats, force)
-
-
-def _best_seed(folder: Path) -> Path:
-    """Return the folder of the best seed where ``folder`` holds several, else ``folder`` itself."""
-    try:
-        seed = json.loads((folder / RESULT).read_text(encoding="utf-8"))["best_seed"]
-    except (OSError, ValueError, KeyError, TypeError):
-        return folder
-    return folder / f"seed_{seed}"
 
 
 def held_out(figures: Evaluation) -> dict[str, Measured]:

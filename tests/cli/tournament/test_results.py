@@ -17,7 +17,7 @@ A, B, C = "at 1", "at 2", "at 3"
 
 
 def invoke(*options: object) -> Result:
-    return CliRunner().invoke(app, ["results", *map(str, options)])
+    return CliRunner().invoke(app, ["tournament", "results", *map(str, options)])
 
 
 def plain(shown: Result) -> str:

@@ -20,7 +20,7 @@ QUICK = ("--scenario", "striker_vs_goalie", "--candidates", "6", "--at-once", "2
 
 
 def invoke(*options: object) -> Result:
-    return CliRunner().invoke(app, ["sweep", *map(str, options), "--workers", "0"])
+    return CliRunner().invoke(app, ["tournament", "sweep", *map(str, options), "--workers", "0"])
 
 
 @pytest.fixture

@@ -14,7 +14,7 @@ QUICK = ("--scenario", "striker_vs_goalie", "--set", "ends.time_limit=0.3", "--r
 
 
 def invoke(*options: object) -> Result:
-    return CliRunner().invoke(app, ["tournament", *map(str, options)])
+    return CliRunner().invoke(app, ["tournament", "run", *map(str, options)])
 
 
 def plain(shown: Result) -> str:

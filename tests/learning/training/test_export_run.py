@@ -141,20 +141,16 @@ def test_the_commands_write_list_and_show_models(run: Path, tmp_path: Path) -> N
     assert "held-out result" in again
     robobt("export", str(run), "--name", "beside")
     assert (run / "beside.pt").is_file()
-    listed = json.loads(robobt("models", "--path", out, "--json"))
+    listed = json.loads(robobt("list", "models", "--path", out, "--json"))
     own = [file for file in listed["models"] if file["card"]["name"] == "mine"]
     assert own == [written["files"][1], written["files"][0]]
     assert listed["problems"] == []
-    assert "mine" in robobt("models", "--path", out)
-    shown = robobt("models", str(tmp_path / "models" / "mine.pt"))
+    assert "mine" in robobt("list", "models", "--path", out)
+    shown = robobt("show", str(tmp_path / "models" / "mine.pt"))
     assert "sin_" in shown
     assert f"robobt {__version__}, commit {source_commit() or 'unknown'}" in shown
-    assert f"robobt {__version__}, commit unknown" in robobt("models", "go_to_ball_ddpg")
+    assert f"robobt {__version__}, commit unknown" in robobt("show", "go_to_ball_ddpg")
     (tmp_path / "models" / "mine.pt").write_bytes(b"broken")
-    assert "manifest" in robobt("models", "--path", out, code=1)
-    assert (
-        "manifest"
-        in json.loads(robobt("models", "--path", out, "--json", code=1).partition("\nrobobt")[0])["problems"][
-            0
-        ]
-    )
+    assert "manifest" in robobt("list", "models", "--path", out, code=1)
+    listed = robobt("list", "models", "--path", out, "--json", code=1).partition("\nrobobt")[0]
+    assert "manifest" in json.loads(listed)["problems"][0]

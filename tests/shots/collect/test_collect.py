@@ -233,7 +233,7 @@ def test_a_trial_that_raises_is_named(monkeypatch: pytest.MonkeyPatch, tmp_path:
 
 def kill_after(start_python: StartPython, path: Path, rows: int, workers: int) -> None:
     """Start a collection of 80 shots as a process of its own and kill it in the middle."""
-    command = ["-m", "robobt", "collect", "shots", "-n", "80", "--seed", "5"]
+    command = ["-m", "robobt", "shots", "collect", "--count", "80", "--seed", "5"]
     growing = path if path.suffix == ".csv" else path.with_name(path.name + ".csv")
     process = start_python(*command, "--out", path, "-w", workers)
     soon(lambda: growing.exists() and growing.read_bytes().count(b"\n") > rows)

@@ -155,7 +155,7 @@ def test_training_and_map_are_commands(tmp_path: Path):
 
 @pytest.mark.integration
 def test_collecting_is_a_command(tmp_path: Path):
-    options = ["collect", "shots", "-n", "3", "-w", "1", "--out", str(tmp_path / "shots.csv")]
+    options = ["shots", "collect", "--count", "3", "-w", "1", "--out", str(tmp_path / "shots.csv")]
     shown = CliRunner().invoke(app, options)
     assert shown.exit_code == 0, shown.output
     assert "3 shots" in shown.output

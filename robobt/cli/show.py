@@ -1,0 +1,195 @@
+"""``robobt show``: one thing with all of it, by its name or file."""
+
+from __future__ import annotations
+
+from enum import StrEnum
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from robobt.cli import show_play, show_recording
+from robobt.cli.common import Imports, Json, complete_play, import_files
+from robobt.cli.lists import REGISTERED, list_registered, registered
+from robobt.cli.options import option
+from robobt.cli.outputs import RECORDING, make_folders
+from robobt.cli.page import Page
+
+
+class Kind(StrEnum):
+    """What can be shown."""
+
+    PLAY = "play"
+    SKILL = "skill"
+    RATER = "rater"
+    POLICY = "policy"
+    MODEL = "model"
+    SCENARIO = "scenario"
+    TASK = "task"
+    RECORDING = "recording"
+
+
+_PLURALS = {Kind.SKILL: "skills", Kind.RATER: "raters", Kind.POLICY: "policies", Kind.TASK: "tasks"}
+_FORMATS = {
+    Kind.PLAY: show_play.FORMATS,
+    Kind.SCENARIO: (".yaml",),
+    Kind.MODEL: (".md",),
+    Kind.RECORDING: show_recording.FORMATS,
+}
+
+
+def show(
+    name: Annotated[
+        str,
+        typer.Argument(
+            metavar="NAME",
+            help="A play (with parameters, as in PLAY:NAME=VALUE), skill, rater, policy, model, scenario or "
+            "task by its name, or the file of a recording, league log, model, tree or scenario.",
+            autocompletion=complete_play,
+        ),
+    ],
+    kind: Annotated[Kind | None, option("--kind")] = None,
+    out: Annotated[
+        Path | None,
+        option(
+            "--out",
+            " it; the name's ending is the format: .svg, .dot, .yaml or .xml for a play's tree, .yaml for a "
+            "scenario, .html, .gif or .png for a recording, .md for a model's card as model hubs read it",
+            metavar="FILE",
+        ),
+    ] = None,
+    *,
+    examined: show_play.Examined,
+    shown: show_recording.Shown,
+    page: Page,
+    imports: Imports = None,
+    as_json: Json = False,
+) -> None:
+    """Show a play's tree, a scenario, a model's card, a skill or a recorded match.
+
+    A recording becomes a page that opens in any browser and needs no network, beside the recording unless
+    --out says otherwise.
+
+    Keys of --json: of a play: play; nodes, each with path, type and depth; with --lint findings, each with
+    path, rule and message, and wiring: entries of the store that are read and that nothing writes, or of
+    another type; with --statistics scenario, seed, and robots: for each robot its nodes with path, ticks,
+    transitions (of status), successes, failures, runs (ticks that left it running), own_time and time (with
+    all below it), in seconds. Of anything else as in 'robobt list', with one entry.
+
+    Exit code 1 when --lint finds wrong wiring, which no match would play.
+    """
+    import_files(imports)
+    what = kind or _kind_of(name)
+    _check(what, out, examined, shown, as_json=as_json)
+    make_folders({"--out": out})
+    if what is Kind.RECORDING:
+        show_recording.show_recording(Path(name), out, shown, page)
+    elif what is Kind.PLAY:
+        show_play.show_play(name, out, examined, as_json=as_json)
+    elif what is Kind.SCENARIO:
+        from robobt.cli.scenarios import show_scenario
+
+        show_scenario(name, out, as_json=as_json)
+    elif what is Kind.MODEL:
+        from robobt.cli.models import show_model
+
+        show_model(name, out, as_json=as_json)
+    else:
+        list_registered(_PLURALS[what], name, as_json=as_json)
+
+
+def _check(
+    what: Kind,
+    out: Path | None,
+    examined: show_play.Examined,
+    shown: show_recording.Shown,
+    *,
+    as_json: bool,
+) -> None:
+    """Refuse options that are for other kinds of things."""
+    if what is not Kind.PLAY and (given := examined.given()):
+        raise typer.BadParameter(f"is for a play, and this is a {what}", param_hint=given)
+    if what is not Kind.RECORDING and (given := shown.given()):
+        raise typer.BadParameter(f"is for a recording, and this is a {what}", param_hint=given)
+    if what is Kind.RECORDING and as_json:
+        raise typer.BadParameter("is not for recordings; see 'robobt record statistics'", param_hint="--json")
+    formats = _FORMATS.get(what, ())
+    if out is not None and out.suffix.lower() not in formats:
+        ends = f"takes a name that ends in {', '.join(formats)}, not '{out}'"
+        there = ends if formats else f"does nothing here: a {what} is only printed"
+        raise typer.BadParameter(there, param_hint="--out")
+
+
+def _kind_of(name: str) -> Kind:
+    """Return what has this name.
+
+    Raises:
+        typer.BadParameter: nothing has it, or several things have.
+    """
+    if (of_file := _kind_of_file(name)) is not None:
+        return of_file
+    from robobt.config.resources import bundled_scenarios
+    from robobt.models.file import ModelError
+    from robobt.models.find import find_model
+
+    play = name.partition(":")[0]
+    found = [Kind.PLAY] if registered("plays", play) else []
+    found += [Kind.SCENARIO] if name in bundled_scenarios() else []
+    found += [kind for kind, plural in _PLURALS.items() if kind is not Kind.TASK and registered(plural, name)]
+    try:
+        find_model(name)
+        found.append(Kind.MODEL)
+    except ModelError:
+        pass
+    if not found and _is_task(name):
+        found.append(Kind.TASK)
+    if len(found) > 1:
+        there = f"{name!r} is a {' and a '.join(found)}; choose with --kind"
+        raise typer.BadParameter(there, param_hint="NAME")
+    if not found:
+        raise typer.BadParameter(_nothing(play), param_hint="NAME")
+    return found[0]
+
+
+def _kind_of_file(name: str) -> Kind | None:
+    """Return what a file holds, by the ending of its name; None for a name that is no file's."""
+    lowered = name.lower()
+    if lowered.endswith((RECORDING, *show_recording.LOGS)):
+        return Kind.RECORDING
+    if lowered.endswith((".pt", ".onnx")):
+        return Kind.MODEL
+    if lowered.endswith((".xml", ".btproj", ".py")) or ".py:" in name:
+        return Kind.PLAY
+    if lowered.endswith((".yaml", ".yml")):
+        from robobt.config.yaml import read_yaml
+
+        return Kind.SCENARIO if "robots" in read_yaml(Path(name)) else Kind.PLAY
+    return None
+
+
+def _is_task(name: str) -> bool:
+    """Return whether a task has this name; where what tasks need is not installed, none has."""
+    from robobt.config.extras import MissingExtraError
+
+    try:
+        return registered("tasks", name)
+    except MissingExtraError:
+        return False
+
+
+def _nothing(name: str) -> str:
+    """Say that nothing has this name, with the reason where a package failed, or with names close to it."""
+    from robobt.cli.lists import names_of, problem_with
+    from robobt.config.errors import close_names
+    from robobt.config.resources import bundled_scenarios
+    from robobt.models.find import list_models, model_folders
+
+    kinds = [kind for kind in REGISTERED if kind != "tasks"]
+    for kind in kinds:
+        if problem := problem_with(kind, name):
+            return problem
+    models = [path.stem for folder in model_folders() for path in list_models(folder)]
+    known = [*bundled_scenarios(), *models, *(one for kind in kinds for one in names_of(kind))]
+    meant = close_names(name, dict.fromkeys(known))
+    guess = f"did you mean {' or '.join(meant)}? " if meant else ""
+    return f"nothing is called {name!r}; {guess}'robobt list plays' and so on list what there is"

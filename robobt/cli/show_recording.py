@@ -1,0 +1,103 @@
+"""A recorded match as a page for the browser, a picture or an animation, or in the live page."""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from robobt.cli.common import say
+from robobt.cli.options import option
+from robobt.cli.outputs import PAGE, RECORDING
+from robobt.cli.page import Page
+
+LOGS = (".log", ".log.gz")
+"""How the names of league logs end."""
+
+FORMATS = (PAGE, ".gif", ".png")
+"""How the names of files end that a recording is written to."""
+
+
+@dataclass(frozen=True)
+class Shown:
+    """Which part of a recording is shown, and where."""
+
+    live: Annotated[bool, option("--live", " instead of writing a page, for a long recording")] = False
+    start: Annotated[
+        float | None,
+        option("--from", "; by default the start, for a picture the end", min=0.0),
+    ] = None
+    end: Annotated[float | None, option("--to", ", of an animation; by default the end", min=0.0)] = None
+    robot: Annotated[str | None, option("--robot", " to show beside a picture or animation")] = None
+
+    def given(self) -> str | None:
+        """Return one of the options that was given, None if none was."""
+        named = {"--live": self.live, "--from": self.start, "--to": self.end, "--robot": self.robot}
+        return next((name for name, value in named.items() if value not in (None, False)), None)
+
+    def check(self, ending: str) -> None:
+        """Refuse options that would do nothing; ``ending`` is that of the file to write, empty for none."""
+        picture = ending in (".gif", ".png")
+        for given, needed, name in (
+            (self.start is not None, self.live or picture, "--from"),
+            (self.end is not None, ending == ".gif", "--to"),
+            (self.robot is not None, picture, "--robot"),
+            (self.live, not ending, "--live"),
+        ):
+            if given and not needed:
+                raise typer.BadParameter("does nothing here; see --help", param_hint=name)
+
+
+def show_recording(recording: Path, out: Path | None, shown: Shown, page: Page) -> None:
+    """Write a recording or league log as a page, a picture or an animation, or show it in the live page."""
+    shown.check("" if out is None else out.suffix.lower())
+    if shown.live:
+        _show(recording, shown.start or 0.0, page)
+        return
+    from robobt.match.recording import load_recording
+
+    with _recording(recording) as file:
+        loaded = load_recording(file)
+    if out is None:
+        stem = recording.name.removesuffix(".gz").removesuffix(".log").removesuffix(RECORDING)
+        out = recording.with_name(f"{stem}{PAGE}")
+    if out.exists() and out.samefile(recording):
+        raise typer.BadParameter("is the recording itself; give another name", param_hint="--out")
+    if out.suffix.lower() in (".gif", ".png"):
+        from robobt.cli.record import recorded_robot
+        from robobt.live.replay_picture import write_gif, write_png
+
+        who = None if shown.robot is None else recorded_robot(loaded, shown.robot)
+        if out.suffix.lower() == ".gif":
+            say(f"Animation: {write_gif(loaded, out, shown.start, shown.end, who)}")
+        else:
+            say(f"Picture: {write_png(loaded, out, shown.start, who)}")
+        return
+    from robobt.live.replay_html import write_html
+
+    say(f"Page: {write_html(loaded, out)}")
+
+
+@contextmanager
+def _recording(file: Path) -> Iterator[Path]:
+    """Give the file itself, or a recording of what a league log holds."""
+    if not file.name.lower().endswith(LOGS):
+        yield file
+        return
+    from robobt.league.log.world import record_log
+
+    with tempfile.TemporaryDirectory() as folder:
+        yield record_log(file, Path(folder) / f"{file.name}{RECORDING}")
+
+
+def _show(recording: Path, start: float, page: Page) -> None:
+    """Show a recording or a league log in the live page, until Ctrl-C."""
+    with _recording(recording) as file, page.server() as server:
+        from robobt.live.replayed import Replay
+
+        Replay(server, file, start).show()
