@@ -28,7 +28,7 @@ ROOT = Path(__file__).parent.parent
 INDEX = (ROOT / "docs" / "index.md").read_text()
 PAGES = {
     str(path.relative_to(ROOT)): path
-    for path in [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").glob("*.md"))]
+    for path in [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").rglob("*.md"))]
 }
 FENCED = re.compile(r"^ *```(\w*)\n(.*?)^ *```", re.DOTALL | re.MULTILINE)
 ANCHOR = re.compile(r"[^\w\- ]")
@@ -158,7 +158,8 @@ def pages(nav: list[Any]) -> set[str]:
 
 def test_every_page_is_in_the_sites_contents() -> None:
     named = pages(read_yaml(ROOT / "mkdocs.yml")["nav"])
-    written = {path.name for path in (ROOT / "docs").glob("*.md")}
+    docs = ROOT / "docs"
+    written = {str(path.relative_to(docs)) for path in docs.rglob("*.md")}
     written |= {f"tutorials/{path.stem}.md" for path in (ROOT / "examples").glob("*.py")}
     assert {page for page in named if not page.startswith("reference/")} == written
 
@@ -176,6 +177,36 @@ def test_language_models_are_told_of_every_page() -> None:
     ]
 
 
+MEASUREMENTS = [page for page in PAGES if page.startswith("docs/measurements/")]
+ROOMS = [
+    "world",
+    "sim",
+    "motion",
+    "skills",
+    "plays",
+    "match",
+    "learning",
+    "models",
+    "shots",
+    "league",
+    "tournament",
+    "tree",
+]
+MEASURED = re.compile(
+    r"Measured \d{4}-\d\d-\d\d at `[0-9a-f]{7,}`; rests on ([a-z]+(?:, [a-z]+)*)\.\n\n```sh\n(.+?)```\n",
+    re.DOTALL,
+)
+
+
+@pytest.mark.parametrize("page", MEASUREMENTS)
+def test_a_measurement_begins_with_its_date_rooms_and_command(page: str) -> None:
+    for section in re.split(r"(?m)^## ", PAGES[page].read_text())[1:]:
+        title, _, body = section.partition("\n\n")
+        found = MEASURED.match(body)
+        assert found, title
+        assert set(found[1].split(", ")) <= set(ROOMS), title
+
+
 def test_the_citation_is_of_this_version() -> None:
     assert read_yaml(ROOT / "CITATION.cff")["version"] == robobt.__version__
 
@@ -183,7 +214,7 @@ def test_the_citation_is_of_this_version() -> None:
 @pytest.mark.integration
 def test_ones_own_play_is_looked_at_and_played(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
-    blocks = re.findall(r"```(\w+)\n(.*?)```", INDEX, re.DOTALL)
+    blocks = re.findall(r"```(\w+)\n(.*?)```", INDEX.partition("## 3. ")[0], re.DOTALL)
     (python,) = [block for kind, block in blocks if kind == "python"]
     Path("my_play.py").write_text(python)
     lines = [line for kind, block in blocks if kind == "sh" for line in block.splitlines()]

@@ -12,7 +12,6 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-import torch
 from typer.testing import CliRunner
 
 import robobt
@@ -106,7 +105,7 @@ def a_tree_file() -> Mapping[str, object]:
 
 
 def a_runner() -> Mapping[str, object]:
-    match = robobt.Match(robobt.load_scenario("striker_vs_goalie"))
+    match = robobt.Match(robobt.load_scenario("striker_vs_goalkeeper"))
     return {"runner": TreeRunner(Selector("all", False, [SelectShot(), Stop()]), match.players[0].store)}
 
 
@@ -124,10 +123,6 @@ def a_skill() -> Mapping[str, object]:
     return {"Skill": Skill, "Status": Status, "thoughts": lambda: 0.5}
 
 
-def an_observation() -> Mapping[str, object]:
-    return {"observation": torch.zeros(1, 6)}
-
-
 def a_store() -> Mapping[str, object]:
     entrants = (read_entrant("team_player"), read_entrant("field_player"))
     with Plan(robobt.load_scenario("three_v_three"), entrants, 1, 1).open_store(Path("night.sqlite")):
@@ -136,7 +131,6 @@ def a_store() -> Mapping[str, object]:
 
 BEFORE: dict[str, Callable[[], Mapping[str, object]]] = {
     "learned_skills": models,
-    "learning": an_observation,
     "live": a_skill,
     "recording": a_recording,
     "shots": shots,
@@ -203,14 +197,16 @@ def test_the_yaml_of_a_page_is_read(page: str) -> None:
 
 
 SHORTER = {
-    "collect": ["-n", "150"],
     "compare": ["--trials", "1"],
-    "demonstrations": ["--episodes", "2"],
+    "evaluate": ["--starts", "20"],
     "match": ["--trials", "1"],
-    "sweep": [
+    "record demonstrations": ["--episodes", "2"],
+    "shots collect": ["--count", "150"],
+    "tournament run": ["--rounds", "1", "--workers", "0"],
+    "tournament sweep": [
         "--candidates",
         "2",
-        "--at-once",
+        "--concurrent",
         "2",
         "--rounds",
         "1",
@@ -219,7 +215,6 @@ SHORTER = {
         "--workers",
         "0",
     ],
-    "tournament": ["--rounds", "1", "--workers", "0"],
     "train": ["--set", "steps=2000", "--set", "evaluation.starts=20", "--set", "evaluation.held_out=20"],
 }
 """By command, options that come last and so hold."""
@@ -242,7 +237,7 @@ NOT_HERE = {
     "official": "tests/league/test_official_controller.py: it takes the official program",
     "../old": "tests/tournament/test_two_states.py: it takes another checkout",
     "other_machine": "tests/tournament/test_store.py: it takes another machine's results",
-    "robobt live": "tests/cli/test_live.py: it lasts until Ctrl-C",
+    "--live": "tests/cli/test_live.py: it lasts until Ctrl-C",
     "robobt serve": "tests/cli/test_league.py: it lasts until Ctrl-C, on ports that nobody uses",
     "log.gz": "tests/cli/test_league.py: it takes the log of a match",
     "python -m benchmarks": "tests/benchmarks/test_commands.py: it takes hours",
@@ -292,8 +287,8 @@ FILES = {
 
 
 def with_commands() -> list[str]:
-    """All but the start page and the tour, which have tests of their own in the fast suite."""
-    return [page.stem for page in sorted(DOCS.glob("*.md")) if page.stem not in ("index", "tour")]
+    """All but the start page, which has tests of its own in the fast suite."""
+    return [page.stem for page in sorted(DOCS.glob("*.md")) if page.stem != "index"]
 
 
 @pytest.mark.parametrize("page", [page for page in with_commands() if lines(page)])
@@ -311,7 +306,7 @@ def test_the_commands_of_a_page_run(page: str, tmp_path: Path, monkeypatch: pyte
             for long, short in LESS.items():
                 shorter = re.sub(long, short, shorter)
             program, words = program_and_words(shorter)
-            command = [*words, *SHORTER.get(words[0], [])]
+            command = [*words, *SHORTER.get(words[0], SHORTER.get(" ".join(words[:2]), []))]
             done = CliRunner().invoke(PROGRAMS[program], command)
-            verdicts = (0, 1) if line.startswith("robobt sweep") else (0,)  # 1: nothing is better
+            verdicts = (0, 1) if line.startswith("robobt tournament sweep") else (0,)  # 1: nothing is better
             assert done.exit_code in verdicts, f"{shorter}: {done.output} {done.exception}"
