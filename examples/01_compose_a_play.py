@@ -32,7 +32,7 @@ my_striker()
 # %% [markdown]
 # To play it, a scenario says who stands where, and when a trial ends. Positions are in metres from the
 # middle of the field; blue attacks towards +x. There are [bundled scenarios](../scenarios.md) too: `robobt
-# scenarios`.
+# list scenarios`.
 
 # %%
 scenario = robobt.Scenario.model_validate(
@@ -48,6 +48,6 @@ print(f"{result.outcome} after {result.time:.2f} s")
 result
 
 # %% [markdown]
-# The recording holds what every node of the tree did at every tick. `robobt replay
-# out/first_play.robobt.arrows` makes it a page for the browser, with `--gif out/first_play.gif --robot
+# The recording holds what every node of the tree did at every tick. `robobt show
+# out/first_play.robobt.arrows` makes it a page for the browser, with `--out out/first_play.gif --robot
 # "blue 1"` an animation.

@@ -32,6 +32,6 @@ for player in match.players:
 match.world.truth()
 
 # %% [markdown]
-# `robobt replay out/six_v_six.robobt.arrows` makes a page of it.
+# `robobt show out/six_v_six.robobt.arrows` makes a page of it.
 #
 # ![Ten seconds of such a match](../images/six.gif)

@@ -23,7 +23,7 @@ with plan.open_store("out/tutorial.sqlite") as store:
 
 # %% [markdown]
 # A rating is a strength on the Elo scale with its 95 % interval: where the intervals of two teams overlap
-# widely, it takes more rounds. `robobt tournament --sprt` plays as many as are needed, and no more.
+# widely, it takes more rounds. `robobt tournament run --sprt` plays as many as are needed, and no more.
 
 # %%
 for name, one in found.standings.items():

@@ -2,8 +2,8 @@
 # # Watch and steer a match live
 #
 # The match is played at its own pace and streamed to a page in the browser: open the address that is
-# printed. There it can be paused, slowed down and steered; robots and ball can be dragged. `robobt live
-# six_v_six` does the same.
+# printed. There it can be paused, slowed down and steered; robots and ball can be dragged. `robobt match
+# six_v_six --live` does the same.
 
 # %%
 import robobt

@@ -23,7 +23,7 @@ def goalkeepers(
     force: Annotated[bool, typer.Option("--force", help="Write over a file that is there.")] = False,
     as_json: Json = False,
 ) -> None:
-    """Fit a population of goalkeepers to recorded shots, for 'robobt collect shots --goalkeepers'.
+    """Fit a population of goalkeepers to recorded shots, for 'robobt shots collect --goalkeepers'.
 
     Each shot is played again from where everybody was at the kick, as a race of ball and goalkeeper.
     The population that makes the recorded outcomes likeliest is printed, with how well it predicts shots

@@ -20,7 +20,7 @@ _Data = Annotated[
     typer.Option(
         "--data",
         help="Shots: a folder with train.csv and test.csv, as the paper's author published them, or a "
-        "Parquet or CSV file of 'robobt collect shots'. By default our own.",
+        "Parquet or CSV file of 'robobt shots collect'. By default our own.",
     ),
 ]
 
