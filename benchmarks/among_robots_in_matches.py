@@ -24,7 +24,7 @@ from benchmarks.go_to_ball_among_robots import shares
 from benchmarks.transfer import SEED, WORLDS
 from robobt.learning.envs import GoToBallAmongRobotsSettings, make_task
 from robobt.learning.envs.go_to_ball.task import TOUCHING
-from robobt.learning.opponents.patrols import TRAITS, Patrols
+from robobt.learning.opponents.patrols import PATROL_TRAITS, Patrols
 from robobt.match import MatchLoop, Scenario
 from robobt.match.loop import WorldFactory
 from robobt.plays.base import PLAYS
@@ -53,7 +53,8 @@ class Patrol(Skill):
     """Drive back and forth between two places, the second first; always RUNNING.
 
     Args:
-        way: the two places and the top speed, as :data:`robobt.learning.opponents.patrols.TRAITS` names them.
+        way: the two places and the top speed, by their names in
+            :data:`robobt.learning.opponents.patrols.PATROL_TRAITS`.
     """
 
     way: tuple[float, ...] = (0.0, 0.0, 1.0, 0.0, 1.0)
@@ -154,7 +155,7 @@ def scenario(simulator: object, policy: str, start: dict[str, float]) -> Scenari
     for k in range(TASK.others.count):
         prefix = f"other_{k}_"
         other = {name.removeprefix(prefix): value for name, value in start.items() if prefix in name}
-        way = {name: other[name] * (1.0 if name == "speed" else -1.0) for name in TRAITS}
+        way = {name: other[name] * (1.0 if name == "speed" else -1.0) for name in PATROL_TRAITS}
         turned = wrap_angle(other["heading"] + pi)
         pose = {"position": (-other["x"], -other["y"]), "heading": turned}
         yellow.append({"number": k, "play": "patrol", "params": way, "start": pose})

@@ -42,7 +42,7 @@ from robobt.learning.training.off_policy import OffPolicyRun
 from robobt.learning.training.on_policy import OnPolicyRun
 from robobt.learning.training.preset_files import merged, read_preset
 from robobt.learning.training.problems import Problem, problem_of
-from robobt.learning.training.run import Run
+from robobt.learning.training.run import TrainingRun
 from robobt.learning.training.run_folder import RunFolder
 from robobt.learning.training.settings import settings_of
 from robobt.models.card import ModelCard, ObservationCard, action_outputs
@@ -210,7 +210,7 @@ class Curve:
         self.points.append((steps, round(spent, 2), figures.rate, figures.mean_time))
 
 
-class _Within(Run):
+class _Within(TrainingRun):
     """A run that ends, and lets its rates fall, by CPU time instead of steps."""
 
     curve: Curve

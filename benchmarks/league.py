@@ -23,7 +23,7 @@ from robobt.league.serve.served_field import ServedField
 from robobt.league.serve.server import SimServer
 from robobt.league.serve.serving import served_scenario
 from robobt.league.wire.endpoints import VISION_GROUP, Endpoint, Endpoints
-from robobt.league.wire.sockets import LOOPBACK, Receiver
+from robobt.league.wire.sockets import LOOPBACK_ADDRESS, Receiver
 from robobt.league.world import LeagueWorld
 from robobt.match import load_scenario
 from robobt.match.loop import MatchLoop
@@ -115,7 +115,7 @@ def free_endpoints() -> Endpoints:
     """Return ports that are free at the moment, so that nothing else on this machine interferes."""
     names = [name for name in Endpoints.model_fields if name != "referee"]
     with ExitStack() as opened:
-        ports = {name: opened.enter_context(Receiver(LOOPBACK, 0)).port for name in names}
+        ports = {name: opened.enter_context(Receiver(LOOPBACK_ADDRESS, 0)).port for name in names}
     groups = {name: Endpoint(VISION_GROUP, ports.pop(name)) for name in ("vision", "tracker")}
     return Endpoints.model_validate(ports | groups)
 

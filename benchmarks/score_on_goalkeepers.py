@@ -21,7 +21,7 @@ from robobt.cli.common import parse_assignments
 from robobt.learning.envs import ScoreOnGoalkeeperSettings, ScoreOnGoalkeeperTask, run_starts
 from robobt.learning.envs.evaluation import Decide
 from robobt.learning.envs.scripted import drive_and_kick
-from robobt.learning.opponents.keepers import KINDS
+from robobt.learning.opponents.keepers import GOALKEEPER_KINDS
 from robobt.statistics import wilson_interval
 
 SEED = 3_000_017
@@ -39,7 +39,7 @@ def main() -> None:
     model = load_policy(given.model, skill="Score")
     policies: dict[str, Decide] = {"model": model, "script": drive_and_kick}
     print(f"{'goalkeeper':12}{'policy':10}{'goals':>6} of {given.starts}   95 % interval     time")
-    for kind in KINDS:
+    for kind in GOALKEEPER_KINDS:
         for name, policy in policies.items():
             goals, time = score(policy, kind, given.starts, changes)
             low, high = wilson_interval(goals, given.starts)

@@ -20,7 +20,7 @@ from robobt.tournament.plan import Plan
 from robobt.tournament.play import play_tournament
 from robobt.tournament.played import PlayedMatch, SideResult
 from robobt.tournament.standings import standings_of
-from robobt.tournament.store import Store
+from robobt.tournament.store import MatchStore
 from robobt.world.game import Team
 
 
@@ -83,7 +83,7 @@ def tournament(
         standings_of(played.matches, plan.names)
         summed = perf_counter() - begun
         path = Path(folder) / "alone.sqlite"
-        with Store(path, {"seed": 1}) as store:
+        with MatchStore(path, {"seed": 1}) as store:
             begun = perf_counter()
             for match in played.matches:
                 store.add(match)

@@ -17,7 +17,7 @@ from robobt.config.atomic import write_atomically
 from robobt.config.errors import unknown_name
 from robobt.config.yaml import read_yaml
 from robobt.learning.training.progress import OnProgress
-from robobt.learning.training.results import Spread, Summary, summary_of
+from robobt.learning.training.results import SeedSpread, SeedSummary, summary_of
 from robobt.learning.training.seeds import train_seeds
 from robobt.learning.training.settings import SettingsError, TrainSettings, load_settings
 
@@ -52,7 +52,7 @@ def compare(
     workers: int = 1,
     on_variant: Callable[[str], None] | None = None,
     on_progress: OnProgress | None = None,
-) -> dict[str, Summary]:
+) -> dict[str, SeedSummary]:
     """Train every variant with every seed; finished runs in ``out`` are kept, unfinished ones resumed.
 
     ``comparison.json`` and ``comparison.md`` are rewritten after each variant.
@@ -78,7 +78,7 @@ def compare(
     for name in only:
         if name not in found:
             raise SettingsError("", f"no variant is called {name!r}; {unknown_name(name, found)}")
-    summaries: dict[str, Summary] = {}
+    summaries: dict[str, SeedSummary] = {}
     for name, settings in found.items():
         if only and name not in only:
             continue
@@ -93,7 +93,7 @@ def compare(
     return summaries
 
 
-def rows_of(summaries: Mapping[str, Summary]) -> list[list[str]]:
+def rows_of(summaries: Mapping[str, SeedSummary]) -> list[list[str]]:
     """Return a comparison as rows of text, the heads first."""
     rows = [
         [
@@ -123,13 +123,13 @@ def rows_of(summaries: Mapping[str, Summary]) -> list[list[str]]:
     return rows
 
 
-def table_of(summaries: Mapping[str, Summary]) -> str:
+def table_of(summaries: Mapping[str, SeedSummary]) -> str:
     """Return a comparison as a Markdown table: medians, and ranges where seeds differ."""
     head, *rows = ["| " + " | ".join(row) + " |" for row in rows_of(summaries)]
     return "\n".join([head, "|" + " --- |" * len(rows_of(summaries)[0]), *rows]) + "\n"
 
 
-def _text(spread: Spread | None, form: str) -> str:
+def _text(spread: SeedSpread | None, form: str) -> str:
     if spread is None:
         return "-"
     low, middle, high = [form.format(value) for value in (spread["low"], spread["median"], spread["high"])]

@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 import pyarrow as pa
 
-from robobt.shots.keepers.population import TRAITS, Traits
+from robobt.shots.keepers.population import FITTED_TRAITS, Traits
 from robobt.sim.settings import PRESETS
 from robobt.world.compiled import compiled, record_dtype
 from robobt.world.field import DIVISION_B
@@ -128,11 +128,11 @@ def goal_chances(shots_: FloatArray, traits_: FloatArray, offset: float, follows
 
     Args:
         shots_: (n, 8) of :func:`race_inputs`.
-        traits_: (m, 7) :data:`~robobt.shots.keepers.population.TRAITS`; their offset is left out.
+        traits_: (m, 7) :data:`~robobt.shots.keepers.population.FITTED_TRAITS`; their offset is left out.
         offset: standard deviation of the offset, over which the chance is worked out exactly [m].
         follows: share of the ball's bearing off the aim by which the kick goes astray.
     """
-    shots, traits = shots_.view(SHOT)[:, 0], traits_.view(TRAITS)[:, 0]
+    shots, traits = shots_.view(SHOT)[:, 0], traits_.view(FITTED_TRAITS)[:, 0]
     chances = np.zeros(len(shots))
     blur = sqrt(2.0) * max(offset, LEAST_OFFSET)
     for i, shot in enumerate(shots):

@@ -22,7 +22,7 @@ from types import FrameType
 _BASE = 128
 """Exit statuses of processes that a signal ended are its number plus this."""
 
-_TOGETHER = 1.0
+_SAME_END_TIME = 1.0
 """Signals within this time of the first one ask for the same end: service managers send several [s]."""
 
 _WAIT_FOR_WRITERS = 0.2
@@ -116,7 +116,7 @@ def ending(numbers: tuple[int, ...] = (signal.SIGINT, *TERMINATE)) -> Iterator[N
         if number == getattr(signal, "SIGHUP", None):
             _close(terminals)
         now = time.monotonic()
-        if _told.number is not None and now < _told.at + _TOGETHER:
+        if _told.number is not None and now < _told.at + _SAME_END_TIME:
             return
         _told.number, _told.at = number, now
         if _told.patience is not None and _told.force is None:

@@ -133,7 +133,7 @@ def test_signals_that_come_together_are_one() -> None:
 
 
 def test_a_later_signal_breaks_off_a_clean_up_that_takes_too_long(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(signals, "_TOGETHER", 0.0)
+    monkeypatch.setattr(signals, "_SAME_END_TIME", 0.0)
 
     def block() -> None:
         try:

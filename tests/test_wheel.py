@@ -85,7 +85,7 @@ def test_it_plays_and_loads_its_models_where_nothing_else_is_installed(
     played = clean.run("robobt", "match", "striker_vs_goalie", "--trials", "2", "--json")
     assert played.returncode == 0, played.stderr
     assert json.loads(played.stdout)["trials"] == 2
-    refused = clean.run("robobt", "match", "striker_vs_goalie", "--trials", "1", "--replay", "x.html")
+    refused = clean.run("robobt", "match", "striker_vs_goalie", "--trials", "1", "--record", "x.html")
     assert 'pip install "robobt[record]"' in refused.stderr
     assert clean.size() < 350e6
 

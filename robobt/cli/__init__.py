@@ -36,7 +36,7 @@ _COMMANDS = {
 }
 """The commands by name: a function of a module here, and what the list of commands says of it."""
 
-_GROUPS = {
+_COMMAND_GROUPS = {
     "tournament": (
         "Let teams play each other, and rate them.",
         {
@@ -122,7 +122,7 @@ def add_commands(
 
 def application(only: str | None = None) -> typer.Typer:
     """Make the application; of one command or group alone where that is all that is asked for."""
-    known = only in _COMMANDS or only in _GROUPS
+    known = only in _COMMANDS or only in _COMMAND_GROUPS
     made = typer.Typer(
         no_args_is_help=True,
         add_completion=not known,
@@ -132,7 +132,7 @@ def application(only: str | None = None) -> typer.Typer:
     )
     made.callback()(global_options)
     add_commands(made, {name: place for name, place in _COMMANDS.items() if name == only or not known})
-    for name, (about, commands) in _GROUPS.items():
+    for name, (about, commands) in _COMMAND_GROUPS.items():
         if name == only or not known:
             group = typer.Typer(no_args_is_help=True, help=about)
             # A group of its own even with a single command.

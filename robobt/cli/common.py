@@ -27,6 +27,7 @@ from robobt.cli.screen import console as console
 from robobt.cli.screen import errors as errors
 from robobt.config.errors import ConfigError, RobobtError, unknown_name
 from robobt.config.extras import missing_extra
+from robobt.config.seeds import MAX_SEED as MAX_SEED
 from robobt.signals import Terminated, at_the_latest_after, ending
 
 if TYPE_CHECKING:
@@ -39,9 +40,6 @@ Json = Annotated[bool, option("--json")]
 
 Imports = Annotated[list[Path] | None, option("--import")]
 """The option of every command that knows plays or skills by name; see ``import_files``."""
-
-MAX_SEED = 2**53 - 1
-"""The largest seed that JSON keeps exactly."""
 
 Seed = Annotated[int | None, option("--seed", "; by default the scenario's", min=0, max=MAX_SEED)]
 """The option of commands that play a scenario with its seed or another."""
@@ -143,7 +141,7 @@ def import_files(paths: Iterable[Path] | None) -> None:
         python_files.import_files(paths)
 
 
-_PATIENCE = 0.6
+_ENDING_TIMEOUT = 0.6
 """How long a skill may go on after a signal that ends the command [s]."""
 
 
@@ -164,7 +162,7 @@ def world_of(address: str, publish: bool = False) -> Iterator[WorldFactory]:
     with ExitStack() as stack:
         for factory in factories:
             stack.callback(getattr(factory, "close", _nothing))
-        stack.enter_context(at_the_latest_after(_PATIENCE))
+        stack.enter_context(at_the_latest_after(_ENDING_TIMEOUT))
         yield factories[-1]
 
 
@@ -203,13 +201,13 @@ def blaming(option: str) -> Iterator[None]:
     except ConfigError as error:
         field, problem = error.field, error.problem
         # The problem names the robot already; of the field only the parameter is news.
-        if (robot := _ROBOT.match(problem)) and (place := _ROBOTS_FIELD.match(field)):
+        if (robot := _ROBOT_PREFIX.match(problem)) and (place := _ROBOTS_FIELD.match(field)):
             named = (robot[1], field[place.end() :])
             field, problem = ": ".join(filter(None, named)), problem[robot.end() :]
         raise ConfigError(option, problem, field) from error
 
 
-_ROBOT = re.compile(r"((?:blue|yellow) \d+): ")
+_ROBOT_PREFIX = re.compile(r"((?:blue|yellow) \d+): ")
 _ROBOTS_FIELD = re.compile(r"robots\.\w+\.\d+\.(?:params\.|play$)?")
 
 

@@ -53,9 +53,9 @@ def _raters() -> Registry[Any]:
 
 
 def _policies() -> Registry[Any]:
-    from robobt.skills.ball.go_to_ball import POLICIES
+    from robobt.skills.ball.go_to_ball import GO_TO_BALL_POLICIES
 
-    return POLICIES
+    return GO_TO_BALL_POLICIES
 
 
 def _tasks() -> Registry[Any]:

@@ -81,7 +81,7 @@ class Trials:
 
 
 @dataclass(frozen=True)
-class Kept:
+class KeptTrials:
     """What is kept of the trials: a recording of one, and all results."""
 
     record: Annotated[
@@ -150,7 +150,7 @@ class Trees:
 
 
 @dataclass(frozen=True)
-class Played:
+class MatchVenue:
     """Where a match is played, and who sees it meanwhile."""
 
     world: Where = "sim"
@@ -184,10 +184,10 @@ def match(
     ],
     *,
     run: Trials,
-    kept: Kept,
+    kept: KeptTrials,
     trees: Trees,
     changes: TeamChanges,
-    where: Played,
+    where: MatchVenue,
     refereeing: Refereeing,
     page: Page,
     as_json: Json = False,
@@ -229,7 +229,7 @@ def match(
 
 
 def _play_on(
-    loaded: Scenario, run: Trials, kept: Kept, where: Played, referees: RefereeFactory, page: Page
+    loaded: Scenario, run: Trials, kept: KeptTrials, where: MatchVenue, referees: RefereeFactory, page: Page
 ) -> None:
     """Play match after match in the browser, until Ctrl-C."""
     from robobt.match import MatchLoop
@@ -260,8 +260,8 @@ def _play_on(
 def _play_trials(
     loaded: Scenario,
     run: Trials,
-    kept: Kept,
-    where: Played,
+    kept: KeptTrials,
+    where: MatchVenue,
     referees: RefereeFactory,
     page: Page,
     *,

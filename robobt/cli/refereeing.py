@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 HALF = 300.0
 """Playing time of a half. Source: SSL rules [s]."""
 
-_LONGEST = 3600.0
+_LONGEST_MATCH = 3600.0
 """A match that is not over by then never will be [s]."""
 
 
@@ -30,7 +30,7 @@ class Who(StrEnum):
     NONE = "none"
 
 
-class Stages(StrEnum):
+class MatchExtent(StrEnum):
     """How much of a match is played."""
 
     FULL = "full"
@@ -51,7 +51,7 @@ class Refereeing:
             "; by default what ROBOBT_GAME_CONTROLLER names, or ssl-game-controller on the PATH",
         ),
     ] = None
-    stages: Annotated[Stages | None, option("--stages")] = None
+    stages: Annotated[MatchExtent | None, option("--stages")] = None
 
     def of(self, scenario: Scenario) -> tuple[Scenario, RefereeFactory]:
         """Return the scenario as these options change it, and who makes its referee; see :func:`refereed`."""
@@ -65,7 +65,7 @@ class Refereeing:
 
 
 def refereed(
-    scenario: Scenario, who: Who | None, controller: Path | None, stages: Stages | None
+    scenario: Scenario, who: Who | None, controller: Path | None, stages: MatchExtent | None
 ) -> tuple[Scenario, RefereeFactory]:
     """Return the scenario as these options change it, and who makes its referee.
 
@@ -81,11 +81,11 @@ def refereed(
         scenario = scenario.without_referee()
     elif who is not None and scenario.referee is None:
         scenario = scenario.model_copy(update={"referee": RefereeSettings()})
-    if stages is Stages.FULL:
+    if stages is MatchExtent.FULL:
         if scenario.referee is None:
             raise typer.BadParameter("needs a referee, who counts the time", param_hint="--stages")
         settings = scenario.referee.model_copy(update={"half_length": HALF})
-        ends = scenario.ends.model_copy(update={"time_limit": _LONGEST, "score_limit": None})
+        ends = scenario.ends.model_copy(update={"time_limit": _LONGEST_MATCH, "score_limit": None})
         scenario = scenario.model_copy(update={"referee": settings, "ends": ends})
     if who is not Who.OFFICIAL:
         return scenario, own_referee

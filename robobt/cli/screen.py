@@ -9,7 +9,7 @@ from pathlib import Path
 
 from rich.console import Console
 
-_NARROWEST, _WIDEST = 40, 1000
+_NARROWEST_SCREEN, _WIDEST_SCREEN = 40, 1000
 """Widths from which a table loses text, and beyond which padding takes megabytes [columns]."""
 
 
@@ -18,7 +18,7 @@ def drop_odd_sizes(environment: MutableMapping[str, str]) -> None:
 
     Rich prints nothing in 0 columns, and raises for digits that int() does not read.
     """
-    for name, least, most in (("COLUMNS", _NARROWEST, _WIDEST), ("LINES", 1, _WIDEST)):
+    for name, least, most in (("COLUMNS", _NARROWEST_SCREEN, _WIDEST_SCREEN), ("LINES", 1, _WIDEST_SCREEN)):
         given = environment.get(name, "")
         # The length first: int() refuses thousands of digits.
         if not (given.isdecimal() and len(given) <= len(str(most)) and least <= int(given) <= most):

@@ -28,7 +28,7 @@ class Predictor(StrEnum):
     BEST = "shot_best"
 
 
-class Part(StrEnum):
+class AuthorShots(StrEnum):
     """Which of the author's shots."""
 
     TRAIN = "train"
@@ -97,7 +97,7 @@ def score(
     data: Annotated[
         Path, option("--data", ": one file, or the folder of the paper's train.csv and test.csv")
     ],
-    part: Annotated[Part, option("--part", " when --data is their folder")] = Part.TEST,
+    part: Annotated[AuthorShots, option("--part", " when --data is their folder")] = AuthorShots.TEST,
     as_json: Json = False,
 ) -> None:
     """Judge a shot predictor on recorded shots.

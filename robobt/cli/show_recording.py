@@ -98,6 +98,6 @@ def _recording(file: Path) -> Iterator[Path]:
 def _show(recording: Path, start: float, page: Page) -> None:
     """Show a recording or a league log in the live page, until Ctrl-C."""
     with _recording(recording) as file, page.server() as server:
-        from robobt.live.replayed import Replay
+        from robobt.live.replayed import RecordingPlayback
 
-        Replay(server, file, start).show()
+        RecordingPlayback(server, file, start).show()

@@ -10,7 +10,7 @@ from robobt.cli.common import console, name_lines, table
 if TYPE_CHECKING:
     from rich.table import Table
 
-_FIGURES = {
+_TABLE_ROWS = {
     "goals": ("goals",),
     "expected goals": ("expected_goals",),
     "shots on goal": ("shots_on_goal",),
@@ -31,7 +31,7 @@ def team_figures(teams: Mapping[str, Mapping[str, float]], title: str = "") -> T
     """Return a row a figure and a column a team."""
     share = (console.width - 22) // max(1, len(teams))
     listed = table(title, *[name_lines(name, console.width - share) for name in teams])
-    for label, names in _FIGURES.items():
+    for label, names in _TABLE_ROWS.items():
         listed.add_row(label, *[_text(label, [team[name] for name in names]) for team in teams.values()])
     return listed
 

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from rich.live import Live
     from rich.table import Table
 
-    from robobt.learning.training.progress import Progress as Standing
+    from robobt.learning.training.progress import TrainingProgress as Standing
     from robobt.learning.training.results import TrainResult
     from robobt.learning.training.settings import TrainSettings
 

@@ -10,7 +10,7 @@ PACKAGE = Path(__file__).resolve().parents[1]
 BUILT_FROM = PACKAGE / "commit.txt"
 """File in a wheel with the commit it was built from; see ``hatch_build.py``."""
 
-_PATIENCE = 10.0
+_GIT_TIMEOUT = 10.0
 """Timeout for git [s]."""
 
 
@@ -38,7 +38,7 @@ def commit_of(package: Path) -> str:
 def _git(folder: Path, *arguments: str) -> str | None:
     try:
         done = subprocess.run(
-            ["git", *arguments], cwd=folder, capture_output=True, text=True, timeout=_PATIENCE, check=False
+            ["git", *arguments], cwd=folder, capture_output=True, text=True, timeout=_GIT_TIMEOUT, check=False
         )
     except (OSError, subprocess.SubprocessError):
         return None

@@ -10,7 +10,7 @@ from pydantic_core import ErrorDetails
 
 from robobt.config.errors import FieldError, message_of, one_line, short_repr, unknown_name
 
-_WORDS = {
+_PLAIN_WORDS = {
     "valid array": "list",
     "valid tuple": "list",
     "Tuple": "list",
@@ -53,7 +53,7 @@ def first_problem(error: ValidationError, model: type[BaseModel], data: object =
     place = [str(part) for part in problem["loc"]] if data is None else _path_in(problem["loc"], data)
     cause = problem.get("ctx", {}).get("error")
     message = problem["msg"]
-    for theirs, ours in _WORDS.items():
+    for theirs, ours in _PLAIN_WORDS.items():
         message = message.replace(theirs, ours)
     if isinstance(cause, Exception):
         message = message_of(cause)

@@ -32,10 +32,10 @@ from ruamel.yaml.representer import SafeRepresenter
 
 from robobt.config.errors import ConfigError
 
-MAX_BYTES = 128 * 1024
+MAX_YAML_BYTES = 128 * 1024
 """Largest text that is read; the shipped scenarios have some 3 kB."""
 
-MAX_DEPTH = 100
+MAX_YAML_DEPTH = 100
 """Deepest nesting that is read; a level of a tree takes three."""
 
 Scalar: TypeAlias = bool | int | float | str | None
@@ -63,7 +63,7 @@ def read_yaml(path: Path, error: type[ConfigError] = ConfigError) -> dict[str, A
     Raises:
         ConfigError: the file cannot be read, is not plain YAML or not a mapping; it names the line.
     """
-    data = parse_marked(read_limited(path, MAX_BYTES, error), str(path), error).plain()
+    data = parse_marked(read_limited(path, MAX_YAML_BYTES, error), str(path), error).plain()
     if not isinstance(data, dict):
         raise error(str(path), "must hold a mapping of fields")
     return data
@@ -84,8 +84,8 @@ def read_limited(path: Path, limit: int, error: type[ConfigError] = ConfigError)
 
 def parse_marked(content: bytes | str, file: str, error: type[ConfigError] = ConfigError) -> Marked:
     """Return the data of one YAML document with its positions."""
-    if len(content) > MAX_BYTES:
-        raise error(file, f"is larger than {MAX_BYTES // 1024} KiB")
+    if len(content) > MAX_YAML_BYTES:
+        raise error(file, f"is larger than {MAX_YAML_BYTES // 1024} KiB")
     try:
         return _document(YAML(typ="safe", pure=True).parse(content))
     except MarkedYAMLError as cause:
@@ -103,7 +103,7 @@ def write_yaml(data: object) -> str:
     writer.Representer = _PlainRepresenter
     writer.default_flow_style = None
     writer.sort_base_mapping_type_on_output = False  # type: ignore[assignment]
-    writer.width = MAX_BYTES  # ruamel.yaml loses spaces where it wraps plain text
+    writer.width = MAX_YAML_BYTES  # ruamel.yaml loses spaces where it wraps plain text
     writer.indent(mapping=2, sequence=4, offset=2)
     text = StringIO()
     writer.dump(data, text)
@@ -134,8 +134,8 @@ def _node(events: Iterator[Event], event: Event, depth: int) -> Marked:
         raise _problem("anchors (&name) are not allowed", event)
     if event.tag is not None:
         raise _problem(f"the tag {event.tag} is not allowed", event)
-    if depth >= MAX_DEPTH:
-        raise _problem(f"nested deeper than {MAX_DEPTH} levels", event)
+    if depth >= MAX_YAML_DEPTH:
+        raise _problem(f"nested deeper than {MAX_YAML_DEPTH} levels", event)
     line, column = event.start_mark.line + 1, event.start_mark.column + 1
     if isinstance(event, ScalarEvent):
         return Marked(_scalar(event), line, column)
@@ -173,13 +173,13 @@ def resolve(text: str) -> Scalar:
     Raises:
         ValueError: an integer has more digits than Python reads or writes.
     """
-    if text in _WORDS:
-        return _WORDS[text]
+    if text in _YAML_WORDS:
+        return _YAML_WORDS[text]
     if _INTEGER.fullmatch(text):
         value = int(text, 0 if text[:2] in ("0o", "0x") else 10)
         str(value)
         return value
-    return float(text) if _FLOAT.fullmatch(text) else text
+    return float(text) if _FLOAT_PATTERN.fullmatch(text) else text
 
 
 class _PlainRepresenter(SafeRepresenter):
@@ -204,8 +204,8 @@ def _problem(problem: str, event: Event) -> MarkedYAMLError:
 
 
 _INTEGER = re.compile(r"[-+]?[0-9]+|0o[0-7]+|0x[0-9a-fA-F]+")
-_FLOAT = re.compile(r"[-+]?(\.[0-9]+|[0-9]+(\.[0-9]*)?)([eE][-+]?[0-9]+)?")
-_WORDS: dict[str, bool | float | None] = {
+_FLOAT_PATTERN = re.compile(r"[-+]?(\.[0-9]+|[0-9]+(\.[0-9]*)?)([eE][-+]?[0-9]+)?")
+_YAML_WORDS: dict[str, bool | float | None] = {
     "": None,
     **{
         word: value

@@ -25,13 +25,13 @@ from robobt.config.resources import models_folder, scenarios_folder
 from robobt.config.telling import tell_warnings
 from robobt.engines.work import ReportT, ResultT, TaskT, Work
 
-_ATTEMPTS = 4
+_TASK_ATTEMPTS = 4
 """Number of tries of a task whose worker or node is lost, because the task itself may be the cause."""
 
-_LONG, _MOST = 1.0, 32
+_BATCH_TIME, _BATCH_LIMIT = 1.0, 32
 """Short tasks are sent in batches of about this duration [s], and of at most this many."""
 
-_POLL = 0.5
+_RESULT_POLL = 0.5
 """Longest wait for a result at a time; reports and signals are checked in between [s]."""
 
 
@@ -127,7 +127,7 @@ class RayEngine(Closing):
                     flying[do.remote(key, shared, os.getcwd(), batch, reports)] = batch, attempt
                 if not flying:
                     break
-                ready, _ = ray.wait(list(flying), num_returns=1, timeout=_POLL)
+                ready, _ = ray.wait(list(flying), num_returns=1, timeout=_RESULT_POLL)
                 if reports is not None and on_report is not None:
                     for report in reports.get_nowait_batch(reports.size()):
                         on_report(report)
@@ -136,7 +136,7 @@ class RayEngine(Closing):
                     try:
                         answers, seconds = ray.get(reference)
                     except ray.exceptions.RayError as error:
-                        if len(batch) > 1 or attempt < _ATTEMPTS:
+                        if len(batch) > 1 or attempt < _TASK_ATTEMPTS:
                             # One by one, so that a task that ends its worker does not affect others.
                             again.extend([(task, attempt + (len(batch) == 1)) for task in batch])
                             continue
@@ -145,7 +145,7 @@ class RayEngine(Closing):
                             raise work.error(f"{work.noun} {batch[0]}: {died}") from error
                         yield lost(batch[0], died)
                         continue
-                    size = max(1, min(_MOST, int(_LONG * len(batch) / max(seconds, 1e-6))))
+                    size = max(1, min(_BATCH_LIMIT, int(_BATCH_TIME * len(batch) / max(seconds, 1e-6))))
                     for kind, content in answers:
                         if kind == "result":
                             yield content

@@ -24,7 +24,7 @@ from robobt.signals import TERMINATE, ending, let_go, uninterrupted
 _REACTION = 0.4
 """Time for a worker to finish its files when asked to end [s]."""
 
-_LOOK = 1.0
+_WORKER_POLL = 1.0
 """Interval for checking workers whose connection stays open after their end, held by a forked process [s]."""
 
 
@@ -59,7 +59,7 @@ def run_locally(
                     crew.append(_Worker(packed, setup, first))
         busy = {worker.connection: worker for worker in crew}
         while busy:
-            for ready in wait(list(busy), _LOOK) or [
+            for ready in wait(list(busy), _WORKER_POLL) or [
                 answer for answer, worker in busy.items() if not worker.process.is_alive()
             ]:
                 assert isinstance(ready, Connection)

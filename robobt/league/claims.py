@@ -10,7 +10,7 @@ from robobt.world.game import Team
 from robobt.world.state import RobotId
 
 
-class Claims:
+class RobotClaims:
     """The robots that one world of this process commands.
 
     An earlier claim of the same robots in this process is released first. Other processes of this machine are
@@ -55,7 +55,7 @@ class Claims:
             name.close()
         self._names.clear()
 
-    def _shares(self, other: Claims) -> bool:
+    def _shares(self, other: RobotClaims) -> bool:
         if self._where != other._where:
             return False
         if self._robots is None or other._robots is None:
@@ -76,5 +76,5 @@ class Claims:
             self._names.append(name)
 
 
-_held: set[Claims] = set()
+_held: set[RobotClaims] = set()
 """The claims of this process."""

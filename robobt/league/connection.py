@@ -11,7 +11,7 @@ from robobt.config.errors import RobobtError
 from robobt.config.validation import Settings
 from robobt.league.wire.endpoints import Endpoints, HostAddress
 from robobt.league.wire.links import GrSimLink, Link, ProtocolLink
-from robobt.league.wire.sockets import LOOPBACK
+from robobt.league.wire.sockets import LOOPBACK_ADDRESS
 from robobt.league.wire.steps import StepLink
 from robobt.world.game import Team
 
@@ -27,7 +27,7 @@ class Connection(Settings):
         "grsim",
         description="grSim's packets, the simulation protocol, its steps (lock step), or no commands at all",
     )
-    host: HostAddress = Field(LOOPBACK, description="where the robots are commanded (IPv4 address)")
+    host: HostAddress = Field(LOOPBACK_ADDRESS, description="where the robots are commanded (IPv4 address)")
     interface: HostAddress | None = Field(
         None, description="own address of the interface to listen on; none: this machine's packets only"
     )

@@ -23,7 +23,7 @@ _OPTIONS = [name for name in Connection.model_fields if name not in ("simulator"
 _PHYSICS = {"grsim": "grsim"}
 """Presets for simulators with fixed robots: these limits replace the scenario's."""
 
-_KNOWN = [*_OPTIONS, "physics", *Endpoints.model_fields]
+_KNOWN_OPTIONS = [*_OPTIONS, "physics", *Endpoints.model_fields]
 
 
 class AddressError(ConfigError):
@@ -52,8 +52,8 @@ def parse_address(address: str) -> tuple[Connection, str | None]:
         if name in given:
             raise AddressError(address, "is given twice", name)
         given[name] = value
-        if name not in _KNOWN:
-            raise AddressError(address, f"there is no option {name!r}; there are {', '.join(_KNOWN)}")
+        if name not in _KNOWN_OPTIONS:
+            raise AddressError(address, f"there is no option {name!r}; there are {', '.join(_KNOWN_OPTIONS)}")
     physics = given.pop("physics", None)
     if physics is not None and physics not in PRESETS:
         problem = f"no preset is called {physics!r}; there are {', '.join(PRESETS)}"

@@ -16,7 +16,7 @@ from robobt.league.wire.gamecontroller import RefereeFollower
 from robobt.league.wire.geometry import CameraPlace
 from robobt.league.wire.packets import PacketCounts
 from robobt.league.wire.referee_message import LONGEST
-from robobt.league.wire.sockets import BATCH, Packet, Receiver
+from robobt.league.wire.sockets import MOST_DATAGRAMS, Packet, Receiver
 from robobt.league.wire.vision import CameraFrame, VisionPacket
 from robobt.match.referee.events import RefereeEvent
 from robobt.sim.settings import SimSettings
@@ -29,7 +29,7 @@ from robobt.world.state import Frame, RobotId
 ALL_CAMERAS = 0.002
 """How long a frame waits for those of the other cameras [s]."""
 
-_HORIZON = 0.25
+_LONGEST_PREDICTION = 0.25
 """Longest prediction beyond the last capture [s]."""
 
 _SIZES = ("length", "width", "goal_width", "defense_width", "defense_depth")
@@ -41,7 +41,7 @@ _EQUAL = 0.02
 _UNEQUAL = 0.05
 """Relative error of the initial rate from which the cameras' offsets are wrong."""
 
-_MAX_READING = 0.004
+_FLOOD_READING_TIME = 0.004
 """Longest time for reading useless packets at once, so that a flood does not delay the commands [s]."""
 
 
@@ -137,7 +137,7 @@ class Feed:
         if captured is None or there is None:
             return now
         latency = self._delay + self.connection.latency + self.known.clock.jitter
-        longest = min(_HORIZON, latency + now - self.arrived)
+        longest = min(_LONGEST_PREDICTION, latency + now - self.arrived)
         return min(max(there + self.connection.latency, captured), captured + longest)
 
     def sign(self) -> float:
@@ -150,7 +150,7 @@ class Feed:
     def frame_at(self, time: float) -> Frame:
         """Return the field at a time on the vision's clock, seen from blue's side."""
         captured = self.filter.captured
-        frame = self.filter.frame_at(time if captured is None else min(time, captured + _HORIZON))
+        frame = self.filter.frame_at(time if captured is None else min(time, captured + _LONGEST_PREDICTION))
         frame.game = self._game(frame)
         return frame
 
@@ -175,7 +175,7 @@ class Feed:
         if not select.select(self._sources, [], [], max(0.0, wait))[0]:
             return
         arrived = self._clock()
-        end = arrived + _MAX_READING
+        end = arrived + _FLOOD_READING_TIME
         frames: list[CameraFrame] = []
         read = 0
         for packet in self._vision.receive():
@@ -186,7 +186,7 @@ class Feed:
             elif self._clock() > end:
                 break
         # Arrival times of waiting packets are unknown, so only a camera's newest frame is used for the clock.
-        newest = {frame.camera: frame for frame in frames} if read < BATCH else {}
+        newest = {frame.camera: frame for frame in frames} if read < MOST_DATAGRAMS else {}
         for frame in frames:
             self.add(frame, arrived, waited=frame is not newest.get(frame.camera))
         self.hear_referee()

@@ -13,7 +13,7 @@ _log = logging.getLogger(__name__)
 _BASELINE = 5.0
 """Time over which a rate is measured before it is reported [s]."""
 
-_NOTABLE, _SLOW = 0.01, 0.9
+_NOTABLE_RATE_ERROR, _SLOW_RATE_SHARE = 0.01, 0.9
 """Deviation from which a rate is reported, and share of the expected rate below which a field is slow."""
 
 
@@ -52,11 +52,11 @@ class KnownField(Notices):
         rate = (there - self._since[1]) / elapsed
         self._since = now, there
         found = f"the field's clock runs at {rate:.3f} of real time, not at {self._speed:g}"
-        if rate < _SLOW * self._speed:
+        if rate < _SLOW_RATE_SHARE * self._speed:
             self.tell(
                 "slow",
                 f"{found}: its simulator does not keep up, or was set to be slow. "
                 "The match goes on at that pace, and takes longer; all its times are the field's.",
             )
-        elif abs(rate - self._speed) > _NOTABLE * self._speed:
+        elif abs(rate - self._speed) > _NOTABLE_RATE_ERROR * self._speed:
             self.tell("rate", f"{found}; the match follows it, and all its times are the field's")

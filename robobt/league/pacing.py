@@ -8,11 +8,11 @@ from __future__ import annotations
 _MAX_SHIFT = 0.03
 """Share of a period by which a frame may shift the phase; the rate error stays within it."""
 
-_WINDOW = 0.45
+_TRIGGER_SHARE = 0.45
 """Share of a period around the due time in which a frame triggers an act."""
 
 
-class Pace:
+class FrameBeat:
     """A beat that follows the frames' phase but not their gaps.
 
     The beats are a ``period`` apart, the first at ``now`` [s].
@@ -28,11 +28,11 @@ class Pace:
 
     def opens(self) -> float:
         """Return from when on the next frame triggers an act [s]."""
-        return self._beat + self.period * (1.0 - _WINDOW)
+        return self._beat + self.period * (1.0 - _TRIGGER_SHARE)
 
     def closes(self) -> float:
         """Return when to act even without a frame [s]."""
-        return self._beat + self.period * (1.0 + _WINDOW)
+        return self._beat + self.period * (1.0 + _TRIGGER_SHARE)
 
     def acted(self, now: float, frame: float | None) -> None:
         """Record an act; ``frame`` is when the newest frame since the act before arrived, if one did [s]."""

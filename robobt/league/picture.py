@@ -18,7 +18,7 @@ from robobt.world.state import RobotId
 _BLIND = 0.2
 """Time without any commanded robot in a frame after which all are commanded to stop [s]."""
 
-_PATIENCE = 0.35
+_STANDSTILL_TIMEOUT = 0.35
 """Time after which a robot commanded to move is stopped if nothing is seen to move [s]."""
 
 _DUEL = 2.0
@@ -27,10 +27,10 @@ _DUEL = 2.0
 _COMMANDED, _COMMANDED_TURN = 0.06, 0.3
 """Least sum of its commands since then, because a robot with alternating commands stays in place [m, rad]."""
 
-_MOVED, _TURNED = 0.015, 0.1
+_LEAST_MOTION, _LEAST_TURN = 0.015, 0.1
 """Least observed movement that is not noise [m, rad]."""
 
-_RETRY, _TRIAL = 5.0, 0.3
+_RETRY_PAUSE, _RETRY_TIME = 5.0, 0.3
 """Time after which a stopped robot tries again, and duration of the trial [s] ..."""
 
 _TRIAL_SPEED, _TRIAL_TURN = 0.2, 1.0
@@ -43,7 +43,7 @@ _Pose = tuple[float, float, float]
 
 
 @dataclass(slots=True)
-class _Camera:
+class _CameraView:
     """What a camera sees, since when exactly that, and when it was last heard [s]."""
 
     content: list[object]
@@ -65,8 +65,8 @@ class _Stand:
         new = all(_unlike(trial, it) for it in self.tried)
         if new:
             self.tried.append(trial)
-        if new or time - self.ended >= _RETRY:
-            self.ended = time + _TRIAL
+        if new or time - self.ended >= _RETRY_PAUSE:
+            self.ended = time + _RETRY_TIME
         return time < self.ended
 
 
@@ -101,7 +101,7 @@ class _Demand:
     def unanswered(self, time: float) -> bool:
         """Return whether the robot should have been seen to move by now."""
         enough = hypot(self.x, self.y) > _COMMANDED or abs(self.turn) > _COMMANDED_TURN
-        return enough and time - self.since >= _PATIENCE
+        return enough and time - self.since >= _STANDSTILL_TIMEOUT
 
 
 class PictureWatch:
@@ -120,7 +120,7 @@ class PictureWatch:
 
     def clear(self) -> None:
         """Reset, after robots have been placed elsewhere."""
-        self._cameras: dict[int, _Camera] = {}
+        self._cameras: dict[int, _CameraView] = {}
         self._seen: dict[RobotId, dict[int, float]] = {}
         self._anchors: dict[tuple[int, RobotId | None], _Pose] = {}
         self._demands: dict[RobotId, _Demand] = {}
@@ -133,7 +133,7 @@ class PictureWatch:
         content += [(it.x, it.y) for it in frame.balls]
         camera = self._cameras.get(frame.camera)
         if camera is None:
-            self._cameras[frame.camera] = _Camera(content, time, time)
+            self._cameras[frame.camera] = _CameraView(content, time, time)
         else:
             if content != camera.content:
                 camera.content, camera.changed = content, time
@@ -184,12 +184,12 @@ class PictureWatch:
 
     def _still(self, robot: RobotId, demand: _Demand) -> bool:
         """Return whether no commanded robot moves, or nothing at all changes where a robot is seen."""
-        patience = _DUEL if self._heard - self._moved < _PATIENCE else _PATIENCE
+        patience = _DUEL if self._heard - self._moved < _STANDSTILL_TIMEOUT else _STANDSTILL_TIMEOUT
         return self._heard - max(self._followed, demand.since) >= patience or self._frozen(robot)
 
     def _frozen(self, robot: RobotId) -> bool:
         cameras = self._cameras_of(robot)
-        return bool(cameras) and all(it.heard - it.changed >= _PATIENCE for it in cameras)
+        return bool(cameras) and all(it.heard - it.changed >= _STANDSTILL_TIMEOUT for it in cameras)
 
     def _answered(self, robot: RobotId, stand: _Stand) -> bool:
         """Return whether the picture, or a commanded robot, has moved since a robot was stopped."""
@@ -197,15 +197,18 @@ class PictureWatch:
             return any(it.changed > stand.since for it in self._cameras_of(robot))
         return self._followed > stand.since
 
-    def _cameras_of(self, robot: RobotId) -> list[_Camera]:
+    def _cameras_of(self, robot: RobotId) -> list[_CameraView]:
         """Return the cameras that see a robot."""
         seen = self._seen.get(robot, {})
-        return [self._cameras[it] for it, time in seen.items() if self._heard - time < _PATIENCE]
+        return [self._cameras[it] for it, time in seen.items() if self._heard - time < _STANDSTILL_TIMEOUT]
 
     def _follow(self, what: tuple[int, RobotId | None], pose: _Pose, time: float) -> bool:
         """Find out whether something has moved."""
         x, y, heading = self._anchors.setdefault(what, pose)
-        if hypot(pose[0] - x, pose[1] - y) > _MOVED or abs(wrap_angle(pose[2] - heading)) > _TURNED:
+        if (
+            hypot(pose[0] - x, pose[1] - y) > _LEAST_MOTION
+            or abs(wrap_angle(pose[2] - heading)) > _LEAST_TURN
+        ):
             self._anchors[what] = pose
             self._moved = time
             return True

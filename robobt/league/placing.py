@@ -23,22 +23,22 @@ TIMEOUT = 4.0
 _RESEND = 0.3
 """Interval at which teleports are repeated, because packets get lost [s]."""
 
-_TOLERANCE, _HEADING_TOLERANCE = 0.05, 0.2
+_PLACE_TOLERANCE, _HEADING_TOLERANCE = 0.05, 0.2
 """How close to its place everything has to be seen [m, rad]."""
 
 _HIDDEN, _SHADOW = 0.8, 0.5
 """A ball not seen for this long after it was put this close to a robot is hidden by it [s, m]."""
 
-_BALL = "the ball"
+_BALL_NAME = "the ball"
 
-_PARKED = 0.6
+_UNUSED_ROBOT_DISTANCE = 0.6
 """Distance from the walls to robots that do not play, which the simulator takes off the field [m]."""
 
-_SETTLING = 0.1
+_FRAME_COLLECTION_TIME = 0.1
 """How long frames are collected before the start, so that velocities are known [s]."""
 
 
-class Placer:
+class FieldPlacer:
     """Sets up a field; the robots that ``commanded`` returns have to stand still meanwhile."""
 
     def __init__(
@@ -62,7 +62,7 @@ class Placer:
             self._put(placement)
         else:
             self._await_robots()
-        end = self._clock() + _SETTLING / self._feed.rate
+        end = self._clock() + _FRAME_COLLECTION_TIME / self._feed.rate
         while self._clock() < end:
             self._feed.receive(end - self._clock())
 
@@ -85,7 +85,7 @@ class Placer:
 
     def _await_robots(self) -> None:
         """Wait, as long as it takes, until people have brought the robots; they stand still meanwhile."""
-        told, patience = False, self._clock() + _SETTLING * 10
+        told, patience = False, self._clock() + _FRAME_COLLECTION_TIME * 10
         while missing := [
             str(robot) for robot in self._commanded() if robot not in self._feed.filter.robots()
         ]:
@@ -118,7 +118,7 @@ class Placer:
             if not misplaced and not strangers:
                 return
             waited = now > began + _HIDDEN / self._feed.rate
-            if misplaced == [_BALL] and not strangers and waited and self._ball_hidden(placement):
+            if misplaced == [_BALL_NAME] and not strangers and waited and self._ball_hidden(placement):
                 feed.filter.put_ball(*placement.ball[:2])
                 return
             if now > began + TIMEOUT:
@@ -136,7 +136,7 @@ class Placer:
 
     def _off_field(self, robots: list[RobotId]) -> list[Teleport]:
         field = self._feed.filter.field
-        y = field.half_width + field.margin + _PARKED
+        y = field.half_width + field.margin + _UNUSED_ROBOT_DISTANCE
         return [
             Teleport(robot, -field.half_length + 0.3 * i, y, 0.0, present=False)
             for i, robot in enumerate(robots)
@@ -153,13 +153,13 @@ class Placer:
         for robot, (x, y, heading) in placement.robots.items():
             state = seen.get(robot)
             if state is None or (
-                max(abs(state.x - x), abs(state.y - y)) > _TOLERANCE
+                max(abs(state.x - x), abs(state.y - y)) > _PLACE_TOLERANCE
                 or abs(wrap_angle(state.heading - heading)) > _HEADING_TOLERANCE
             ):
                 misplaced.append(str(robot))
         off = max(abs(frame.ball.x - placement.ball[0]), abs(frame.ball.y - placement.ball[1]))
-        if self._feed.filter.ball_unseen() == inf or off > _TOLERANCE:
-            misplaced.append(_BALL)
+        if self._feed.filter.ball_unseen() == inf or off > _PLACE_TOLERANCE:
+            misplaced.append(_BALL_NAME)
         return misplaced
 
     def _ball_hidden(self, placement: Placement) -> bool:

@@ -28,7 +28,7 @@ from robobt.league.wire.messages import (
     TeamRegistration,
     TeamToController,
 )
-from robobt.league.wire.sockets import LOOPBACK
+from robobt.league.wire.sockets import LOOPBACK_ADDRESS
 from robobt.league.wire.stream import MessageStream, StreamError, encode_varint
 from robobt.match.referee.events import RefereeEvent
 from robobt.world.game import Team
@@ -36,7 +36,7 @@ from robobt.world.game import Team
 TEAM_PORT, AUTOREF_PORT, REMOTE_PORT = 10008, 10007, 10011
 """Where the game controller listens for teams, automatic referees and remote controls."""
 
-_WAIT = 5.0
+_CONTROLLER_TIMEOUT = 5.0
 """Longest wait for the controller [s]."""
 
 _Answer = TypeVar("_Answer", bound=Message)
@@ -59,7 +59,9 @@ class _Connection(Closing):
         self._key, self._answers, self._token = key, answers, ""
         where = f"the game controller at {address[0]}:{address[1]}"
         try:
-            self._stream = MessageStream(socket.create_connection(address, timeout=_WAIT), where)
+            self._stream = MessageStream(
+                socket.create_connection(address, timeout=_CONTROLLER_TIMEOUT), where
+            )
         except OSError as error:
             raise RemoteError(f"{where} cannot be reached: {error.strerror or error}") from error
         try:
@@ -90,7 +92,7 @@ class _Connection(Closing):
 
     def _answer(self) -> Any:
         try:
-            data = self._stream.receive(_WAIT)
+            data = self._stream.receive(_CONTROLLER_TIMEOUT)
             answer: Any = None if data is None else self._answers.FromString(data)
         except (StreamError, DecodeError) as error:
             raise RemoteError(f"the game controller breaks off: {error}") from error
@@ -121,7 +123,7 @@ class TeamConnection(_Connection):
         self,
         name: str,
         team: Team | None = None,
-        host: str = LOOPBACK,
+        host: str = LOOPBACK_ADDRESS,
         port: int = TEAM_PORT,
         key: Path | None = None,
     ) -> None:
@@ -158,7 +160,7 @@ class AutoRefConnection(_Connection):
     """
 
     def __init__(
-        self, name: str, host: str = LOOPBACK, port: int = AUTOREF_PORT, key: Path | None = None
+        self, name: str, host: str = LOOPBACK_ADDRESS, port: int = AUTOREF_PORT, key: Path | None = None
     ) -> None:
         self._name = name
         super().__init__(AutoRefRegistration(identifier=name), ControllerToAutoRef, (host, port), key)
@@ -181,7 +183,7 @@ class RemoteControl(_Connection):
     """
 
     def __init__(
-        self, team: Team, host: str = LOOPBACK, port: int = REMOTE_PORT, key: Path | None = None
+        self, team: Team, host: str = LOOPBACK_ADDRESS, port: int = REMOTE_PORT, key: Path | None = None
     ) -> None:
         registration = RemoteControlRegistration(team=team.name)
         super().__init__(registration, ControllerToRemoteControl, (host, port), key)
@@ -265,7 +267,9 @@ def sign(data: bytes, key: Path) -> bytes:
     """
     try:
         command = ["openssl", "dgst", "-sha256", "-sign", str(key)]
-        done = subprocess.run(command, input=data, capture_output=True, timeout=_WAIT, check=False)
+        done = subprocess.run(
+            command, input=data, capture_output=True, timeout=_CONTROLLER_TIMEOUT, check=False
+        )
     except (OSError, subprocess.TimeoutExpired) as error:
         raise RemoteError(f"messages are signed by the program openssl, which fails: {error}") from error
     if done.returncode != 0:

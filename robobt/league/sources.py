@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from math import hypot, inf
 
 from robobt.league.wire.notices import Notices
-from robobt.league.wire.senders import SILENCE, Address, FirstSender
+from robobt.league.wire.senders import SENDER_SILENCE, Address, FirstSender
 from robobt.league.wire.vision import CameraFrame
 from robobt.world.geometry import Point
 from robobt.world.state import RobotId
@@ -18,7 +18,7 @@ from robobt.world.state import RobotId
 _RESTART = 0.25
 """Silence after which a sender that began later on the same machine is a program that was restarted [s]."""
 
-_TRIAL = 0.2
+_AGREEMENT_TIME = 0.2
 """How long a further sender has to agree with what is seen before it is followed too [s]."""
 
 _NEW = 5.0
@@ -27,13 +27,13 @@ _NEW = 5.0
 _DISAGREEMENT = 0.5
 """How long one sees robots elsewhere before that is reported [s]: they may just have been put there."""
 
-_ELSEWHERE = 0.5
+_ELSEWHERE_DISTANCE = 0.5
 """A robot further from where it is seen is elsewhere [m]: it may drive, and frames may be late."""
 
 _GEOMETRY = 10.0
 """Longest pause between two packets of geometry [s]."""
 
-_MOST = 64
+_MOST_SENDERS = 64
 """Senders that are remembered."""
 
 
@@ -82,10 +82,12 @@ class VisionSources:
         ``seen`` returns where robots are seen by then, in the coordinates of the frame [m].
         """
         source = self._sources.get(sender)
-        if source is None or time - source.heard > SILENCE:
-            if len(self._sources) >= _MOST:
+        if source is None or time - source.heard > SENDER_SILENCE:
+            if len(self._sources) >= _MOST_SENDERS:
                 self._sources = {
-                    one: it for one, it in self._sources.items() if time - it.heard <= SILENCE and it.followed
+                    one: it
+                    for one, it in self._sources.items()
+                    if time - it.heard <= SENDER_SILENCE and it.followed
                 }
             source = self._sources[sender] = _Source(time, time)
         source.heard = time
@@ -106,7 +108,7 @@ class VisionSources:
 
     def _contest(self, source: _Source, sender: Address, camera: int) -> None:
         """Exclude a sender whose camera another sender covers."""
-        source.free = source.heard + SILENCE
+        source.free = source.heard + SENDER_SILENCE
         # A sender followed for long loses only that camera.
         source.followed &= source.heard - source.began > _NEW
         owner = self._cameras[camera]
@@ -131,7 +133,7 @@ class VisionSources:
             return
         if _elsewhere(frame, seen()):
             source.odd = min(source.odd, time)
-            source.free = max(time + _TRIAL, source.free if source.free < inf else time)
+            source.free = max(time + _AGREEMENT_TIME, source.free if source.free < inf else time)
             if time - source.odd > _DISAGREEMENT:
                 self._notices.tell(
                     f"vision of {sender[0]}",
@@ -141,7 +143,7 @@ class VisionSources:
             return
         source.odd = inf
         if source.free == inf:
-            source.free = time + _TRIAL
+            source.free = time + _AGREEMENT_TIME
         source.followed = time >= source.free
 
     def _others(self, sender: Address, source: _Source | None, time: float) -> list[Address]:
@@ -151,7 +153,7 @@ class VisionSources:
             if other == sender or not it.followed:
                 continue
             restarted = other[0] == sender[0] and (source is None or source.began > it.heard)
-            if time - it.heard <= (_RESTART if restarted else SILENCE):
+            if time - it.heard <= (_RESTART if restarted else SENDER_SILENCE):
                 others.append(other)
             else:
                 it.followed = False
@@ -164,7 +166,7 @@ def _elsewhere(frame: CameraFrame, seen: Mapping[RobotId, Point]) -> bool:
     for robot in frame.robots:
         if robot.robot in seen:
             x, y = seen[robot.robot]
-            if hypot(robot.x - x, robot.y - y) > _ELSEWHERE:
+            if hypot(robot.x - x, robot.y - y) > _ELSEWHERE_DISTANCE:
                 far += 1
             else:
                 near += 1

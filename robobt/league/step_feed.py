@@ -16,9 +16,9 @@ from robobt.world.field import FieldGeometry
 from robobt.world.limits import RobotLimits
 from robobt.world.state import RobotId
 
-_ROUNDING = 1e-9
+_TIME_ROUNDING = 1e-9
 
-_WAIT = 2.0
+_ARRIVAL_TIMEOUT = 2.0
 """Time for packets sent before an answer to arrive, because they take another route [s]."""
 
 
@@ -55,7 +55,7 @@ class StepFeed(Feed):
         link, end = self._link, self._link.time + max(0.0, wait)
         if wait <= 0.0:
             return
-        if link.stepped + self._step > end + _ROUNDING:
+        if link.stepped + self._step > end + _TIME_ROUNDING:
             link.time = end
             return
         frames = link.step(self._step)
@@ -67,7 +67,7 @@ class StepFeed(Feed):
 
     def _packets(self, sent: float) -> None:
         """Take in the packets up to those of an instant [s]; the first geometry is waited for too."""
-        end = time.monotonic() + _WAIT
+        end = time.monotonic() + _ARRIVAL_TIMEOUT
         while True:
             for packet in self._vision.receive():
                 self._read(packet, self._link.time)

@@ -6,10 +6,10 @@ from robobt.league.connection import LeagueError
 from robobt.league.feed import Feed
 from robobt.league.placing import TIMEOUT
 
-_SILENT = 1.0
+_REPORTED_SILENCE = 1.0
 """Silence of the vision after which a warning is given [s]."""
 
-_WINDOW, _SLOW = 5.0, 0.9
+_DECISION_WINDOW, _DECISION_SHARE = 5.0, 0.9
 """Period for counting decisions [s of the field], and share of the due ones that causes a warning."""
 
 
@@ -46,12 +46,12 @@ class MatchWatch:
     def _watch_silence(self) -> None:
         feed = self._feed
         silence = (feed.now() - feed.heard) / feed.rate
-        if silence < _SILENT or not feed.frames:
+        if silence < _REPORTED_SILENCE or not feed.frames:
             self._silent = False
             return
         if not self._silent:
             self._silent = True
-            feed.known.tell_again(f"{feed.no_frames(_SILENT)}; robots are stopped until it returns")
+            feed.known.tell_again(f"{feed.no_frames(_REPORTED_SILENCE)}; robots are stopped until it returns")
         if self._begun and self._fatal and silence > TIMEOUT:
             raise LeagueError(f"{feed.no_frames(TIMEOUT)} again; it stopped during the match")
 
@@ -70,10 +70,10 @@ class MatchWatch:
     def _watch_pace(self) -> None:
         self._acts += 1
         elapsed = self._feed.now() - self._since
-        if elapsed < _WINDOW:
+        if elapsed < _DECISION_WINDOW:
             return
         share = self._acts * self._period / elapsed
-        if share < _SLOW:
+        if share < _DECISION_SHARE:
             self._feed.known.tell(
                 "pace",
                 f"robots are commanded {self._acts / elapsed:.0f} times a second of the field, not "

@@ -10,12 +10,12 @@ from contextlib import ExitStack
 from dataclasses import replace
 
 from robobt.config.closing import Closing
-from robobt.league.claims import Claims
+from robobt.league.claims import RobotClaims
 from robobt.league.connection import Connection
 from robobt.league.feed import ALL_CAMERAS
 from robobt.league.known_field import KnownField
-from robobt.league.pacing import Pace
-from robobt.league.placing import Placer
+from robobt.league.pacing import FrameBeat
+from robobt.league.placing import FieldPlacer
 from robobt.league.step_feed import feed_of
 from robobt.league.watch import MatchWatch
 from robobt.league.wire.commands import clamp_command
@@ -31,15 +31,15 @@ from robobt.world.protocol import Placement, World
 from robobt.world.sketch import Sketch
 from robobt.world.state import Frame, RobotId
 
-_RATE = 60.0
+_LOWEST_COMMAND_RATE = 60.0
 """Lowest rate of the commands [Hz]."""
 
-_SHORTEST = 1e-5
+_SHORTEST_WAIT = 1e-5
 """Shortest wait for packets [s]."""
 
 _STAND = RobotCommand()
 
-_SLOWEST = 0.25
+_STALLED_TIME_RATE = 0.25
 """Rate of a match's time while it waits for a field's clock that stood still."""
 
 
@@ -82,7 +82,7 @@ class LeagueWorld(World, Closing):
         field: FieldGeometry | None = None,
         robots: Mapping[RobotId, RobotLimits | None] | None = None,
         settings: SimSettings | None = None,
-        period: float = 1 / _RATE,
+        period: float = 1 / _LOWEST_COMMAND_RATE,
         connection: Connection | None = None,
         clock: Callable[[], float] = time.monotonic,
         known: KnownField | None = None,
@@ -102,7 +102,7 @@ class LeagueWorld(World, Closing):
         commanded = () if here.simulator == "observer" else robots
         with ExitStack() as opened:
             # First, as who is released thereby gives up its ports.
-            claims = Claims(here.where, commanded, here.teams, self.close)
+            claims = RobotClaims(here.where, commanded, here.teams, self.close)
             opened.callback(claims.close)
             self._link = here.link()
             opened.callback(self._link.close)
@@ -112,10 +112,10 @@ class LeagueWorld(World, Closing):
             self._opened = opened.pop_all()
         if claims.taken:
             self._feed.known.tell("players", claims.message())
-        self._placer = Placer(self._feed, self._link, self._commanded, clock)
+        self._placer = FieldPlacer(self._feed, self._link, self._commanded, clock)
         self._watch = MatchWatch(self._feed, period)
         now = self._feed.now()
-        self._pace = Pace(period, now)
+        self._pace = FrameBeat(period, now)
         self._sent_at = self._looked = self._looked_at = self._began = now
         self._kicks: list[tuple[RobotId, float]] = []
         self._restart_time()
@@ -253,13 +253,13 @@ class LeagueWorld(World, Closing):
         """Let all frames until the next act be of this instant."""
         feed = self._feed
         now, there = feed.now(), feed.vision_now()
-        elapsed = max(now - self._looked, _SHORTEST)
+        elapsed = max(now - self._looked, _SHORTEST_WAIT)
         if feed.filter.restarts != self._restarts:
             # Another clock, but the match's time goes on.
             self._restarts = feed.filter.restarts
             self._began = there - self._time - elapsed
         # Where the field stood still the match's time is ahead; it must not stand or go back.
-        self._time = max(self._time + _SLOWEST * elapsed, there - self._began)
+        self._time = max(self._time + _STALLED_TIME_RATE * elapsed, there - self._began)
         self._looked, self._looked_at = now, there
 
     def _frame(self, at: float) -> Frame:
@@ -290,7 +290,7 @@ class LeagueWorld(World, Closing):
         """Wait for the next control period: for the next frame, if it comes at about that time."""
         feed, pace = self._feed, self._pace
         feed.fresh = False
-        repeat = 1.25 / _RATE
+        repeat = 1.25 / _LOWEST_COMMAND_RATE
         # Even when it is late already, so that slow trees still see what has arrived.
         feed.receive(0.0)
         while True:
@@ -308,6 +308,6 @@ class LeagueWorld(World, Closing):
             if now >= self._sent_at + repeat:
                 self._transmit()
             # A time lost in rounding must not be waited for again and again.
-            feed.receive(max(until - now, _SHORTEST) / feed.rate)
+            feed.receive(max(until - now, _SHORTEST_WAIT) / feed.rate)
             if feed.halted and any(command != _STAND for command in self._sent.values()):
                 self._transmit()

@@ -14,7 +14,7 @@ from robobt.tree.registry import Registry
 _C = TypeVar("_C", bound=type[Any])
 
 _ENVS = "robobt.learning.envs"
-_SHIPPED = {
+_SHIPPED_TASKS = {
     "go_to_ball": "go_to_ball.task:GoToBallTask",
     "shoot": "shoot.task:ShootTask",
     "score_on_goalkeeper": "score_on_goalkeeper.task:ScoreOnGoalkeeperTask",
@@ -52,7 +52,7 @@ class Tasks(Registry[type[Any]]):
 
     def __init__(self) -> None:
         super().__init__("task", "robobt.tasks", lambda entry: isinstance(entry, type))
-        for name in _SHIPPED:
+        for name in _SHIPPED_TASKS:
             _tell_gymnasium(name, namespace="robobt/")
             _tell_gymnasium(name)
 
@@ -68,7 +68,7 @@ class Tasks(Registry[type[Any]]):
         enter = super().register(name)
 
         def enter_task(task: _C) -> _C:
-            if name in _SHIPPED:
+            if name in _SHIPPED_TASKS:
                 raise ValueError(f"task {name!r} is one of robobt's; give yours another name")
             if self._is_again(name, task):
                 self._entries[name] = task
@@ -82,19 +82,19 @@ class Tasks(Registry[type[Any]]):
 
     def __getitem__(self, name: str) -> type[Any]:
         """Return the task; see :meth:`Registry.__getitem__`."""
-        return self._shipped(name) if name in _SHIPPED else super().__getitem__(name)
+        return self._shipped(name) if name in _SHIPPED_TASKS else super().__getitem__(name)
 
     def __contains__(self, name: object) -> bool:
-        return name in _SHIPPED or super().__contains__(name)
+        return name in _SHIPPED_TASKS or super().__contains__(name)
 
     def __iter__(self) -> Iterator[str]:
-        return iter((*_SHIPPED, *super().__iter__()))
+        return iter((*_SHIPPED_TASKS, *super().__iter__()))
 
     def __len__(self) -> int:
-        return len(_SHIPPED) + super().__len__()
+        return len(_SHIPPED_TASKS) + super().__len__()
 
     def _shipped(self, name: str) -> type[Any]:
-        module, _, inner = _SHIPPED[name].partition(":")
+        module, _, inner = _SHIPPED_TASKS[name].partition(":")
         task: type[Any] = getattr(import_module(f"{_ENVS}.{module}"), inner)
         task.name = name
         return task

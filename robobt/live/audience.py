@@ -19,7 +19,7 @@ from robobt.live.viewer import Viewer
 
 MOST_VIEWERS = 50
 
-_MOST_WAITING = 1000
+_MOST_WAITING_MESSAGES = 1000
 """Largest number of messages waiting for the match; further ones are refused."""
 
 
@@ -128,7 +128,7 @@ class Audience:
             self._look()
         elif viewer is not self.steerer:
             return "not steering"
-        elif self.inbox.qsize() >= _MOST_WAITING:
+        elif self.inbox.qsize() >= _MOST_WAITING_MESSAGES:
             return "too many"
         else:
             self.inbox.put((message, perf_counter()))

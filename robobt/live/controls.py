@@ -5,6 +5,9 @@ from __future__ import annotations
 from robobt.live.messages import Act, Pause, Speed, Step
 from robobt.live.server import Server
 
+IDLE_POLL = 0.05
+"""How often a match that is paused or over looks for what viewers ask for [s]."""
+
 
 class Controls:
     """Keeps the time settings of a server's viewers, and sends them to all.

@@ -14,22 +14,22 @@ from robobt.world.state import Frame, RobotState
 STOPS_IN = 0.2
 """A robot whose page falls silent is stopped in this time [s]."""
 
-_SLACK = 0.02
+_TICK_LATENESS = 0.02
 """Tolerated delay of a tick [s]."""
 
 HELD_UP = 0.1
 """A command with this much more delay than the fastest counts as that old [s]."""
 
-_WINDOW = 30.0
+_DELAY_WINDOW = 30.0
 """Time for which the shortest delay is kept, because clocks drift apart [s]."""
 
-_MEANT = radians(35.0)
+_RECEIVER_ANGLE = radians(35.0)
 """A pass is not meant for a team-mate farther off the heading than this."""
 
-_SURE = radians(2.5)
+_PASS_ANGLE_ERROR = radians(2.5)
 """Angle error allowed for a pass."""
 
-_TURN, _GAIN = 3.0, 10.0
+_ASSISTED_TURN, _ASSISTED_TURN_GAIN = 3.0, 10.0
 """Turning rate with the ball of an assisted robot [rad/s], and rate per remaining angle [1/s]."""
 
 _ARRIVAL = 2.5
@@ -52,7 +52,7 @@ class HandDriver:
     def __init__(self, clock: Callable[[], float], period: float) -> None:
         self._clock = clock
         # The last tick that still follows a command lasts for a period.
-        self.deadline = STOPS_IN - period - _SLACK
+        self.deadline = STOPS_IN - period - _TICK_LATENESS
         self._wanted: tuple[float, float, float, Frames, bool, float, bool] | None = None
         self._at = 0.0
         self._way = _ShortestWay()
@@ -119,10 +119,10 @@ def _passed(view: Frame, me: RobotState, most: float) -> RobotCommand | None:
     mates = [mate for mate in view.own if mate.id != me.id]
     offs = [(wrap_angle(direction(me.position, mate.position) - me.heading), mate) for mate in mates]
     off, meant = min(offs, key=lambda each: abs(each[0]), default=(pi, me))
-    if abs(off) > _MEANT:
+    if abs(off) > _RECEIVER_ANGLE:
         return None
-    turn = min(_TURN, max(-_TURN, _GAIN * off))
-    if abs(off) > _SURE:
+    turn = min(_ASSISTED_TURN, max(-_ASSISTED_TURN, _ASSISTED_TURN_GAIN * off))
+    if abs(off) > _PASS_ANGLE_ERROR:
         return RobotCommand(omega=turn, dribbler=True)
     speed = view.ball_model.kick_speed(distance(me.position, meant.position), _ARRIVAL)
     return RobotCommand(omega=turn, kick_speed=min(most, speed), dribbler=True)
@@ -137,7 +137,7 @@ class _ShortestWay:
 
     def excess(self, at: float, took: float) -> float:
         """Return the delay beyond the shortest one [s]."""
-        if at > self._since + _WINDOW:
+        if at > self._since + _DELAY_WINDOW:
             self._since, self._before, self._now = at, self._now, float("inf")
         self._now = min(self._now, took)
         return took - min(self._before, self._now)

@@ -8,7 +8,7 @@ _LASTS = 0.5
 """Silence of the page after which a held object is released [s]."""
 
 
-class Grip:
+class HeldObjects:
     """The held robots and ball; times are by one clock [s]."""
 
     def __init__(self) -> None:

@@ -9,10 +9,11 @@ from typing import Any
 from robobt.config.errors import RobobtError
 from robobt.config.yaml import write_yaml
 from robobt.live.driving import HandDriver
-from robobt.live.grip import Grip
+from robobt.live.grip import HeldObjects
 from robobt.live.messages import (
     Act,
     AskForm,
+    ChangeSkill,
     Drive,
     GiveOrder,
     MoveBall,
@@ -21,7 +22,6 @@ from robobt.live.messages import (
     Release,
     Rest,
     Situation,
-    Skill,
     Take,
     TakeOff,
     robot_of,
@@ -41,7 +41,7 @@ class Hands:
     def __init__(self, match: MatchLoop, server: Server, clock: Callable[[], float]) -> None:
         self._match, self._server, self._clock = match, server, clock
         self._steering = Steering(match)
-        self._grip = Grip()
+        self._grip = HeldObjects()
         self._situations = 0
         # A page may have no other files of this machine loaded, as a play or as a model.
         self._files = paths_in(match.scenario.model_dump(mode="json"))
@@ -104,7 +104,7 @@ class Hands:
                 for each in self._meant(act):
                     steering.play(each, play, params)
                 self._tell_form(robot_of(robot), "")
-            case Skill(robot=robot, path=path, params=params):
+            case ChangeSkill(robot=robot, path=path, params=params):
                 self._check_files(robot_of(robot), path, params)
                 steering.change_skill(robot_of(robot), path, params)
                 self._tell_form(robot_of(robot), path)

@@ -13,9 +13,9 @@ from websockets.http11 import Request, Response
 
 from robobt.live.page_files import page_text
 
-_TYPES = {".html": "text/html", ".css": "text/css", ".js": "text/javascript"}
-_HEAD = '<link rel="stylesheet" href="viewer.css">\n<link rel="icon" href="data:,">'
-_SCRIPTS = '<script type="module" src="live.js"></script>'
+_MEDIA_TYPES = {".html": "text/html", ".css": "text/css", ".js": "text/javascript"}
+_LIVE_HEAD = '<link rel="stylesheet" href="viewer.css">\n<link rel="icon" href="data:,">'
+_LIVE_SCRIPTS = '<script type="module" src="live.js"></script>'
 
 RECORDING_TYPE = "application/vnd.apache.arrow.stream"
 
@@ -61,7 +61,7 @@ def file_response(path: str, host: str) -> Response:
     name = path or "index.html"
     if name not in _names():
         return response(HTTPStatus.NOT_FOUND, b"There is no such file.\n", host)
-    return response(HTTPStatus.OK, _content(name), host, _TYPES[PurePosixPath(name).suffix])
+    return response(HTTPStatus.OK, _content(name), host, _MEDIA_TYPES[PurePosixPath(name).suffix])
 
 
 def response(
@@ -100,4 +100,4 @@ def _content(name: str) -> bytes:
     if name != "index.html":
         return page_text(name).encode()
     page = page_text("viewer.html").replace("{{title}}", "robobt live")
-    return page.replace("{{head}}", _HEAD).replace("{{scripts}}", _SCRIPTS).encode()
+    return page.replace("{{head}}", _LIVE_HEAD).replace("{{scripts}}", _LIVE_SCRIPTS).encode()

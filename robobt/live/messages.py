@@ -13,7 +13,7 @@ from robobt.world.game import Team
 from robobt.world.sketch import MOST_LAYERS
 from robobt.world.state import RobotId
 
-MOST_BYTES = 4096
+MOST_MESSAGE_BYTES = 4096
 """The longest message [bytes]."""
 
 RATE, BURST = 200.0, 400.0
@@ -146,7 +146,7 @@ class Play(Settings):
     team: bool = False
 
 
-class Skill(Settings):
+class ChangeSkill(Settings):
     """Give a skill of a robot's tree other parameters."""
 
     do: Literal["skill"]
@@ -212,7 +212,7 @@ Act = (
     | GiveOrder
     | AskForm
     | Play
-    | Skill
+    | ChangeSkill
     | Situation
     | Take
     | Release
@@ -228,7 +228,7 @@ _READER: TypeAdapter[Message] = TypeAdapter(Annotated[Message, Field(discriminat
 
 def read(data: str | bytes) -> Message | None:
     """Return the message, or None if it is invalid."""
-    if len(data) > MOST_BYTES:
+    if len(data) > MOST_MESSAGE_BYTES:
         return None
     try:
         return _READER.validate_json(data)

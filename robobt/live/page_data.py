@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from pydantic import JsonValue
 
 from robobt.match.recording import Recording, RecordingHeader, RobotFlag
-from robobt.match.recording.capture import FIELD
+from robobt.match.recording.capture import FIELD_SKETCHES
 from robobt.match.recording.compared import CANDIDATES, Plans, Written, candidates
 from robobt.match.recording.recording import Timeline
 from robobt.match.recording.stores import plain
@@ -31,7 +31,7 @@ from robobt.world.rules import own_side
 from robobt.world.sketch import Shape
 
 _ABSENT = -(2**15)
-_SHOWN = int(RobotFlag.BALL_CONTACT | RobotFlag.DRIBBLER | RobotFlag.KICK)
+_SHOWN_FLAGS = int(RobotFlag.BALL_CONTACT | RobotFlag.DRIBBLER | RobotFlag.KICK)
 _GOAL_LINE = "goal_line"
 
 
@@ -91,7 +91,7 @@ class ChunkEncoder:
         frames = len(ticks.times[::stride])
         x, y, heading, vx, vy = np.moveaxis(ticks.truth.robots[::stride, :, :5], 2, 0)
         rows = _int16(np.stack((x, y, heading, np.hypot(vx, vy)), axis=-1) * 1000.0)
-        flags = (ticks.flags[::stride] & _SHOWN).T.tolist()
+        flags = (ticks.flags[::stride] & _SHOWN_FLAGS).T.tolist()
         robots = []
         for slot, name in enumerate(self._names):
             written, drawn = ticks.written.get(name, []), ticks.drawn.get(name, [])
@@ -121,7 +121,7 @@ class ChunkEncoder:
                 team: _steps(known.follow(ticks.written.get(team, [])), frames, stride)
                 for team, known in self._plans.items()
             },
-            "drawn": _steps(_drawings(ticks.drawn.get(FIELD, [])), frames, stride),
+            "drawn": _steps(_drawings(ticks.drawn.get(FIELD_SKETCHES, [])), frames, stride),
             "layers": sorted({it[0] for each in ticks.drawn.values() for _, shapes in each for it in shapes}),
             "games": _steps(((tick, _game(game)) for tick, game in ticks.games), frames, stride),
             "events": [

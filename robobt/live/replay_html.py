@@ -26,12 +26,12 @@ MOST_FEEDBACK = 40_000
 
 _FEEDBACK_PERIOD = 0.1
 
-_HEAD = """<meta http-equiv="Content-Security-Policy" content="default-src 'none'; \
+_PAGE_HEAD = """<meta http-equiv="Content-Security-Policy" content="default-src 'none'; \
 style-src 'unsafe-inline'; script-src 'unsafe-inline'; img-src data:">
 <style>
 {style}</style>"""
 
-_SCRIPTS = """<script type="application/json" id="recording">{data}</script>
+_PAGE_SCRIPTS = """<script type="application/json" id="recording">{data}</script>
 <script>
 {script}</script>"""
 
@@ -53,8 +53,8 @@ def replay_html(recording: Recording) -> str:
     start, rest = page_text("viewer.html").split("{{title}}")
     middle, rest = rest.split("{{head}}")
     body, end = rest.split("{{scripts}}")
-    head = _HEAD.replace("{style}", page_text("viewer.css"))
-    before, after = _SCRIPTS.replace("{script}", bundle("replay.js")).split("{data}")
+    head = _PAGE_HEAD.replace("{style}", page_text("viewer.css"))
+    before, after = _PAGE_SCRIPTS.replace("{script}", bundle("replay.js")).split("{data}")
     data = _for_script(page_data(recording))
     return f"{start}{title}{middle}{head}{body}{before}{data}{after}{end}"
 

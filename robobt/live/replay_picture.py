@@ -20,15 +20,15 @@ MOST_PICTURES = 1500
 _PERIOD = 0.08
 """Time from one picture of an animation to the next; the format counts hundredths [s]."""
 
-_TRAIL = 1.0
+_TRAIL_TIME = 1.0
 """Duration of the ball's path that is shown [s]."""
 
-_BAR, _ROW, _PANEL, _INDENT = 28, 19, 300, 14
+_BAR_HEIGHT, _ROW_HEIGHT, _PANEL_WIDTH, _INDENT_WIDTH = 28, 19, 300, 14
 _PAPER, _INK, _FAINT = (246, 248, 250), (23, 33, 43), (150, 160, 170)
-_STATUS = {"S": (31, 157, 91), "F": (221, 75, 65), "R": (47, 125, 240)}
+_STATUS_COLOURS = {"S": (31, 157, 91), "F": (221, 75, 65), "R": (47, 125, 240)}
 
 
-class Stage:
+class RecordingPainter:
     """Paints a recording: the field, time and score below it, and the tree of one robot beside it.
 
     Args:
@@ -49,20 +49,22 @@ class Stage:
             (robot.team, str(robot.number), state.x, state.y, state.heading)
             for robot, state in frame.robots().items()
         ]
-        first = int(np.searchsorted(recording.times, frame.time - _TRAIL))
+        first = int(np.searchsorted(recording.times, frame.time - _TRAIL_TIME))
         way = recording.truth.ball[first : tick + 1, :2]
         trail = [(x, y) for x, y in way[np.isfinite(way).all(axis=1)].tolist()]
         field = self._painter.paint(robots, frame.ball.position, ball_trail=trail)
-        panel = _PANEL if self.robot is not None else 0
-        picture = Image.new("RGB", (field.width + panel, field.height + _BAR), _PAPER)
+        panel = _PANEL_WIDTH if self.robot is not None else 0
+        picture = Image.new("RGB", (field.width + panel, field.height + _BAR_HEIGHT), _PAPER)
         picture.paste(field, (0, 0))
         pen = ImageDraw.Draw(picture)
         score = f"blue {frame.game.blue_score} : {frame.game.yellow_score} yellow"
-        told = [event for event in recording.events if frame.time - _TRAIL < event.time <= frame.time]
+        told = [event for event in recording.events if frame.time - _TRAIL_TIME < event.time <= frame.time]
         parts = [f"{frame.time:.2f} s", score, *[event.kind.replace("_", " ") for event in told[-1:]]]
-        pen.text((10, field.height + _BAR / 2), "     ".join(parts), fill=_INK, font=font(14), anchor="lm")
+        pen.text(
+            (10, field.height + _BAR_HEIGHT / 2), "     ".join(parts), fill=_INK, font=font(14), anchor="lm"
+        )
         if self.robot is not None:
-            self._paint_tree(pen, self.robot, tick, field.width + 12, field.height + _BAR)
+            self._paint_tree(pen, self.robot, tick, field.width + 12, field.height + _BAR_HEIGHT)
         return picture
 
     def _paint_tree(self, pen: ImageDraw.ImageDraw, robot: RobotId, tick: int, x: int, height: int) -> None:
@@ -71,12 +73,12 @@ class Stage:
             letters = letters.upper()
         pen.text((x, 16), f"{robot}", fill=_INK, font=font(15), anchor="lm")
         rows = list(zip(nodes, letters, strict=True))
-        room = (height - 2 * _ROW) // _ROW
+        room = (height - 2 * _ROW_HEIGHT) // _ROW_HEIGHT
         if len(rows) > room:  # too large to show whole: what was ticked
-            rows = [(node, letter) for node, letter in rows if letter in _STATUS][:room]
+            rows = [(node, letter) for node, letter in rows if letter in _STATUS_COLOURS][:room]
         for row, (node, letter) in enumerate(rows):
-            left, middle = x + node.depth * _INDENT, 2 * _ROW + row * _ROW
-            colour = _STATUS.get(letter)
+            left, middle = x + node.depth * _INDENT_WIDTH, 2 * _ROW_HEIGHT + row * _ROW_HEIGHT
+            colour = _STATUS_COLOURS.get(letter)
             pen.ellipse((left, middle - 4, left + 8, middle + 4), fill=colour, outline=colour or _FAINT)
             ink = _FAINT if colour is None else _INK
             pen.text((left + 14, middle), _name(node), fill=ink, font=font(13), anchor="lm")
@@ -110,7 +112,7 @@ def write_png(
     Raises:
         RobobtError: that time was not recorded.
     """
-    picture = Stage(recording, robot).paint(tick_of(recording, time, -1))
+    picture = RecordingPainter(recording, robot).paint(tick_of(recording, time, -1))
     path.parent.mkdir(parents=True, exist_ok=True)
     with replacing(path) as draft:
         picture.save(draft, "PNG", optimize=True)
@@ -134,7 +136,7 @@ def write_gif(
     if not 2 <= len(moments) <= MOST_PICTURES:
         most = MOST_PICTURES * _PERIOD
         raise RobobtError(f"{until - begin:.2f} s are no animation: choose between {_PERIOD} and {most:g} s")
-    stage = Stage(recording, robot)
+    stage = RecordingPainter(recording, robot)
     ticks = [tick_of(recording, moment, 0) for moment in moments]
     palette = _palette([stage.paint(ticks[place]) for place in (0, len(ticks) // 2, -1)])
 

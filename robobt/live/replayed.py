@@ -8,7 +8,7 @@ from contextlib import suppress
 from pathlib import Path
 from queue import Empty
 
-from robobt.live.controls import Controls
+from robobt.live.controls import IDLE_POLL, Controls
 from robobt.live.messages import Act, Reset, Seek
 from robobt.live.server import Server
 from robobt.live.stream import Stream
@@ -17,11 +17,8 @@ from robobt.match.recording.encoder import EncodedTicks
 from robobt.match.recording.stream import TickChanges, open_stream, read_bytes
 from robobt.signals import check
 
-_LOOK = 0.05
-"""Interval for checking viewers' requests while a recording is paused or over [s]."""
 
-
-class Replay:
+class RecordingPlayback:
     """Shows a recording at the viewers' pace, from a start time.
 
     Args:
@@ -121,7 +118,7 @@ class Replay:
     def _idle(self) -> None:
         check()
         with suppress(Empty):
-            self._do(self._server.inbox.get(timeout=_LOOK)[0])
+            self._do(self._server.inbox.get(timeout=IDLE_POLL)[0])
 
     def _do(self, act: Act) -> None:
         match act:

@@ -19,10 +19,10 @@ from typing import Any
 
 from robobt.config.errors import RobobtError
 from robobt.config.extras import MissingExtraError
-from robobt.live.access import LOOPBACK, Access
+from robobt.live.access import LOOPBACK_HOSTS, Access
 from robobt.live.audience import MOST_VIEWERS, Audience
 from robobt.live.http import RECORDING_TYPE, PageConnection, file_response, response, without_body
-from robobt.live.messages import MOST_BYTES
+from robobt.live.messages import MOST_MESSAGE_BYTES
 from robobt.live.stream import Stream
 
 try:
@@ -72,7 +72,7 @@ class Server:
     """
 
     def __init__(self, host: str = "127.0.0.1", port: int = 0, names: Iterable[str] = ()) -> None:
-        self._host, self._port, self._names = host, port, (*LOOPBACK, *names)
+        self._host, self._port, self._names = host, port, (*LOOPBACK_HOSTS, *names)
         self.url = ""
         self.situation = ""
         self._said = self._forms = 0
@@ -151,7 +151,7 @@ class Server:
             process_request=self._answer,
             process_response=without_body,
             create_connection=PageConnection,
-            max_size=MOST_BYTES,
+            max_size=MOST_MESSAGE_BYTES,
             max_queue=16,
             write_limit=2**16,
             compression=None,
@@ -183,7 +183,7 @@ class Server:
     def _listen(self, server: SocketServer) -> None:
         port = next(iter(server.sockets)).getsockname()[1]
         self._access = Access.new(self._names, port)
-        shown = self._names[len(LOOPBACK)] if len(self._names) > len(LOOPBACK) else "127.0.0.1"
+        shown = self._names[len(LOOPBACK_HOSTS)] if len(self._names) > len(LOOPBACK_HOSTS) else "127.0.0.1"
         self.url = f"http://{shown}:{port}/{self._access.token}/"
 
     def _look_now(self) -> None:

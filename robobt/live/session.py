@@ -9,7 +9,7 @@ from contextlib import suppress
 from math import ceil
 from queue import Empty
 
-from robobt.live.controls import Controls
+from robobt.live.controls import IDLE_POLL, Controls
 from robobt.live.hands import Hands
 from robobt.live.messages import Act, Pause, Reset, Speed, Step
 from robobt.live.server import Server
@@ -27,9 +27,6 @@ LATE = 0.005
 
 _GIVE_UP = 0.25
 """Delay from which a match no longer tries to catch up [s]."""
-
-_LOOK = 0.05
-"""Interval for checking viewers' requests while a match is paused or over [s]."""
 
 
 class Live:
@@ -220,7 +217,7 @@ class Live:
         """Wait a moment for viewers' requests."""
         check()
         with suppress(Empty):
-            self._do(*self._server.inbox.get(timeout=_LOOK), match)
+            self._do(*self._server.inbox.get(timeout=IDLE_POLL), match)
         self._due = self._clock()
 
     def _show(self, match: MatchLoop) -> None:

@@ -25,17 +25,17 @@ from robobt.live.present import Present
 from robobt.match.recording import Recording, RecordingHeader, RobotFlag
 from robobt.match.recording.capture import Capture, CapturedTick
 from robobt.match.recording.encoder import EncodedTicks, TickEncoder
-from robobt.match.recording.numbers import COMMAND, numbers_of
+from robobt.match.recording.numbers import COMMAND_NUMBERS, numbers_of
 from robobt.match.recording.reader import poses_of
 from robobt.match.recording.recording import Timeline
 from robobt.match.recording.stream import new_stream
 from robobt.world.game import GameState
 from robobt.world.sketch import Shape
 
-VERSION = 1
+PROTOCOL_VERSION = 1
 """Of the messages between server and page."""
 
-KEPT = 300.0
+KEPT_TIME = 300.0
 """How far back a viewer can go [s]."""
 
 _SEGMENT = 5.0
@@ -44,10 +44,10 @@ _SEGMENT = 5.0
 _MOST_BYTES = 96 * 2**20
 """Largest stored size of a match [bytes]."""
 
-_MOST_WAITING = 20_000
+_MOST_WAITING_TICKS = 20_000
 """Largest number of ticks waiting to be encoded, reached only if the server's thread is dead."""
 
-_AT_ONCE = 60
+_TICKS_PER_MESSAGE = 60
 """Largest number of ticks in a message."""
 
 
@@ -93,11 +93,11 @@ class Stream:
         self._header: RecordingHeader = source.header if isinstance(source, Capture) else source
         self._chunks = ChunkEncoder(self._header)
         self._present = Present()
-        self._waiting: deque[tuple[float, CapturedTick]] = deque(maxlen=_MOST_WAITING)
-        self._encoded: deque[tuple[float, EncodedTicks]] = deque(maxlen=_MOST_WAITING)
+        self._waiting: deque[tuple[float, CapturedTick]] = deque(maxlen=_MOST_WAITING_TICKS)
+        self._encoded: deque[tuple[float, EncodedTicks]] = deque(maxlen=_MOST_WAITING_TICKS)
         self._segments: deque[_Segment] = deque()
         self._last: EncodedTicks | None = None
-        self.header: dict[str, Any] = {"version": VERSION, **header_data(self._header, paths=True)}
+        self.header: dict[str, Any] = {"version": PROTOCOL_VERSION, **header_data(self._header, paths=True)}
         self.first = self.end = 0
         # When the newest tick came, and how long after the one before [s].
         self._came = self._gap = 0.0
@@ -147,7 +147,7 @@ class Stream:
         """Return the ticks of the next message, and when the last of them came [s]."""
         if self._encoder is None:
             return self._encoded.popleft() if self._encoded else None
-        waiting = [self._waiting.popleft() for _ in range(min(_AT_ONCE, len(self._waiting)))]
+        waiting = [self._waiting.popleft() for _ in range(min(_TICKS_PER_MESSAGE, len(self._waiting)))]
         return (waiting[-1][0], self._encoder.encode([tick for _, tick in waiting])) if waiting else None
 
     def messages(self, start: int, most: int) -> tuple[list[bytes], int]:
@@ -191,7 +191,7 @@ class Stream:
         ticks.changes[0] = {**self._present.changes(), **events}
         self._segments.append(_Segment(ticks.times[0]))
         while len(self._segments) > 2 and (
-            self._segments[1].start < ticks.times[0] - KEPT
+            self._segments[1].start < ticks.times[0] - KEPT_TIME
             or sum(segment.size for segment in self._segments) > _MOST_BYTES
         ):
             self.first += len(self._segments.popleft().messages)
@@ -212,7 +212,7 @@ def _as_recording(ticks: EncodedTicks, header: RecordingHeader) -> Recording:
     """Return ticks as what would be read of their recording."""
     slots = {str(robot.id): slot for slot, robot in enumerate(header.robots)}
     truth = poses_of([numbers_of(ticks.truth)], len(slots))
-    commands = numbers_of(ticks.commands).reshape(len(ticks.times), len(slots), COMMAND)
+    commands = numbers_of(ticks.commands).reshape(len(ticks.times), len(slots), COMMAND_NUMBERS)
     letters: list[Timeline[str]] = [[] for _ in slots]
     feedback: list[Timeline[dict[int, str]]] = [[] for _ in slots]
     written: dict[str, Timeline[dict[str, JsonValue]]] = {}

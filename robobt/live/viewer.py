@@ -11,10 +11,10 @@ from websockets.asyncio.server import ServerConnection
 from robobt.live.messages import Allowance
 from robobt.live.stream import Stream
 
-_BEHIND = 30
+_MOST_MESSAGES_BEHIND = 30
 """Number of messages by which a viewer may be behind before it gets the present state instead."""
 
-_AT_ONCE = 2**16
+_BYTES_AT_ONCE = 2**16
 """Bytes sent at once."""
 
 _PAST_AT_ONCE = 2**14
@@ -80,12 +80,12 @@ class Viewer:
             await self._chunks("now", [present])
 
     async def _send_new(self, stream: Stream) -> None:
-        if stream.end - self._next > _BEHIND:
+        if stream.end - self._next > _MOST_MESSAGES_BEHIND:
             self.skipped += 1
             self._next, present = stream.end, stream.present()
             found = [] if present is None else [present]
         else:
-            found, self._next = stream.messages(self._next, _AT_ONCE)
+            found, self._next = stream.messages(self._next, _BYTES_AT_ONCE)
         if self._next < stream.end:
             self.news.set()
         await self._chunks("now", found)

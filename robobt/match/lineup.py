@@ -15,13 +15,13 @@ from robobt.world.state import ROBOT_RADIUS, Frame, RobotState
 
 _log = logging.getLogger(__name__)
 
-_ASIDE = 0.3
+_BENCH_SPACING = 0.3
 """Distance between robots that have left the field [m]."""
 
 _BEHIND_WALL = 0.3
 """Distance behind the wall of a robot that was taken off [m]."""
 
-_ROOM = 2.0 * ROBOT_RADIUS + 0.05
+_RETURN_SPACING = 2.0 * ROBOT_RADIUS + 0.05
 """Least distance from other robots for a robot that is put back [m]."""
 
 
@@ -80,7 +80,7 @@ class Lineup:
                 yield me.id, (me.x, copysign(wall + _BEHIND_WALL, me.y))
             elif me.id in self._away - self._leaving:
                 place = (me.x, copysign(margin, me.y))
-                if all(distance(place, other.position) > _ROOM for other in view.others(me.id)):
+                if all(distance(place, other.position) > _RETURN_SPACING for other in view.others(me.id)):
                     yield me.id, place
 
     def _make_keeper(self, number: int) -> None:
@@ -118,6 +118,6 @@ def leave(view: Frame, me: RobotState, leaving: Collection[int]) -> RobotCommand
     before = [
         robot for robot in view.own if robot.id in leaving and robot.id < me.id and robot.y * me.y > 0.0
     ]
-    x = max(-SUBSTITUTION_REACH, -_ASIDE * (len(before) + 0.5))
+    x = max(-SUBSTITUTION_REACH, -_BENCH_SPACING * (len(before) + 0.5))
     y = copysign((field.half_width + field.outer[1]) / 2, me.y)
     return travel(view, me, (x, y), 0.0, me.limits, avoid_ball=True)

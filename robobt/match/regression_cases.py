@@ -38,7 +38,7 @@ from robobt.match.loop import MatchLoop
 from robobt.match.recording import Recording, RecordingError
 from robobt.match.recording.reader import parse_recording
 from robobt.match.recording.stores import plain
-from robobt.match.recording.stream import MOST_BYTES, new_stream, open_stream, read_bytes
+from robobt.match.recording.stream import MOST_RECORDING_BYTES, new_stream, open_stream, read_bytes
 from robobt.match.scenario.scenario import ScenarioError, rename_files, scenario_from
 from robobt.tree.recording import node_ids
 from robobt.world.command import RobotCommand
@@ -46,10 +46,10 @@ from robobt.world.game import Team
 from robobt.world.protocol import Placement, World
 from robobt.world.state import Frame, RobotId
 
-TOLERANCE = 1e-6
+COMMAND_TOLERANCE = 1e-6
 """Tolerance of a command's numbers [m/s, rad/s], for differences in arithmetic between processors."""
 
-_STATUSES = {"S": "SUCCESS", "F": "FAILURE", "R": "RUNNING"}
+_STATUS_NAMES = {"S": "SUCCESS", "F": "FAILURE", "R": "RUNNING"}
 
 
 class RegressionCaseError(RobobtError, ValueError):
@@ -75,7 +75,7 @@ class _CaseFile(BaseModel):
 
 
 @dataclass(frozen=True)
-class Decision:
+class TreeDecision:
     """A tree's result at a tick.
 
     Attributes:
@@ -97,7 +97,7 @@ class RegressionCase:
     robot: RobotId
     tick: int
     recording: Recording
-    expected: Decision
+    expected: TreeDecision
 
 
 def save_regression_case(recording: Recording, robot: RobotId, tick: int, path: str | Path) -> Path:
@@ -122,7 +122,7 @@ def save_regression_case(recording: Recording, robot: RobotId, tick: int, path: 
     match = _beginning(recording, tick, path.parent)
     played = _play(parse_recording(match, recording.path), robot, tick, path.parent)
     for node, letter in zip(recording.nodes(robot), letters.upper(), strict=True):
-        was, now = _STATUSES.get(letter, "INVALID"), played.statuses.get(node.path, "INVALID")
+        was, now = _STATUS_NAMES.get(letter, "INVALID"), played.statuses.get(node.path, "INVALID")
         if was != now:
             raise RegressionCaseError(
                 f"{recording.path}: played again on the rounded frames of the recording, {robot} does not do "
@@ -163,7 +163,9 @@ def load_regression_case(path: str | Path) -> RegressionCase:
     path = Path(path)
     try:
         file = _CaseFile.model_validate_json(read_bytes(path))
-        match = zlib.decompressobj().decompress(base64.b64decode(file.match, validate=True), MOST_BYTES)
+        match = zlib.decompressobj().decompress(
+            base64.b64decode(file.match, validate=True), MOST_RECORDING_BYTES
+        )
         recording = parse_recording(match, path)
         team, number = file.robot.split()
         robot = RobotId(Team(team), int(number))
@@ -180,7 +182,7 @@ def load_regression_case(path: str | Path) -> RegressionCase:
         raise RegressionCaseError(f"{path}: match: {message_of(error)}") from None
     if file.tick >= len(recording):
         raise RegressionCaseError(f"{path}: tick: must be 0 to {len(recording) - 1}, not {file.tick}")
-    return RegressionCase(path, robot, file.tick, recording, Decision(file.statuses, file.command))
+    return RegressionCase(path, robot, file.tick, recording, TreeDecision(file.statuses, file.command))
 
 
 def check_regression_case(case: RegressionCase | str | Path) -> None:
@@ -200,7 +202,7 @@ def check_regression_case(case: RegressionCase | str | Path) -> None:
         raise RegressionError(f"{place}: {'; '.join(problems)}")
 
 
-def _differences(expected: Decision, actual: Decision) -> Iterator[str]:
+def _differences(expected: TreeDecision, actual: TreeDecision) -> Iterator[str]:
     for path in dict.fromkeys((*expected.statuses, *actual.statuses)):
         statuses = [each.statuses.get(path, "not ticked") for each in (expected, actual)]
         if statuses[0] != statuses[1]:
@@ -208,7 +210,7 @@ def _differences(expected: Decision, actual: Decision) -> Iterator[str]:
             yield f"{path} was {statuses[0]} and is {statuses[1]}{reason}"
     for key, was in expected.command.items():
         now = actual.command.get(key)
-        near = isinstance(was, float) and isinstance(now, float) and abs(was - now) <= TOLERANCE
+        near = isinstance(was, float) and isinstance(now, float) and abs(was - now) <= COMMAND_TOLERANCE
         if was != now and not near:
             yield f"command {key} was {was!r} and is {now!r}"
 
@@ -237,7 +239,7 @@ class _RecordedWorld(World):
         """Move nothing."""
 
 
-def _play(recording: Recording, robot: RobotId, tick: int, folder: Path) -> Decision:
+def _play(recording: Recording, robot: RobotId, tick: int, folder: Path) -> TreeDecision:
     """Tick all trees on the recorded frames up to a tick, and return the result of one of them.
 
     File names in the recording are relative to ``folder``.
@@ -262,7 +264,7 @@ def _play(recording: Recording, robot: RobotId, tick: int, folder: Path) -> Deci
     nodes = player.runner.nodes
     paths = [path for _, path in node_ids(nodes)]
     letters = zip(paths, player.runner.statuses(), strict=True)
-    statuses = {path: _STATUSES[letter] for path, letter in letters if letter != "-"}
+    statuses = {path: _STATUS_NAMES[letter] for path, letter in letters if letter != "-"}
     reasons = {path: node.feedback_message for path, node in zip(paths, nodes, strict=True)}
     sent = commands.get(robot, RobotCommand())
     command = {
@@ -271,7 +273,7 @@ def _play(recording: Recording, robot: RobotId, tick: int, folder: Path) -> Deci
         "kick_trigger": sent.kick_trigger.value,
         "dribbler": bool(sent.dribbler),
     }
-    return Decision(statuses, command, reasons)
+    return TreeDecision(statuses, command, reasons)
 
 
 def _beginning(recording: Recording, tick: int, folder: Path) -> bytes:

@@ -108,7 +108,7 @@ def run_trials_in(
     for trial in record:
         if not 0 <= trial < trials:
             raise ValueError(f"there is no trial {trial} to record; they are 0 to {trials - 1}")
-    job = _Job(
+    job = _TrialJob(
         scenario,
         world_factory,
         seed,
@@ -144,7 +144,7 @@ def run_trials_in(
 
 
 @dataclass(slots=True, frozen=True)
-class _Job:
+class _TrialJob:
     """Everything that a worker needs to play any trial.
 
     The registered plays are included because they are sent by name, so that a worker that receives them

@@ -16,7 +16,7 @@ from robobt.world.geometry import wrap_angle
 from robobt.world.rules import own_side
 from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS, Frame, RobotId, RobotState
 
-_GAP = 5e-4
+_ROUNDING_GAP = 5e-4
 """Gap left between touching objects, so that rounding does not make them overlap [m]."""
 
 _PASSES = 100
@@ -88,11 +88,11 @@ def _move_apart(places: list[list[float]], field: FieldGeometry) -> None:
             place[1] = min(max(place[1], -field.half_width), field.half_width)
         for one, other in combinations(places, 2):
             dx, dy = other[0] - one[0], other[1] - one[1]
-            away, needed = hypot(dx, dy), one[2] + other[2] + _GAP
+            away, needed = hypot(dx, dy), one[2] + other[2] + _ROUNDING_GAP
             if away >= needed:
                 continue
             moved = True
-            push = (needed - away + _GAP / 10) / 2
+            push = (needed - away + _ROUNDING_GAP / 10) / 2
             ux, uy = (dx / away, dy / away) if away else (1.0, 0.0)
             one[0], one[1] = one[0] - push * ux, one[1] - push * uy
             other[0], other[1] = other[0] + push * ux, other[1] + push * uy

@@ -8,16 +8,16 @@ from typing import Any
 from robobt.world.game import GameState, TeamStatus
 from robobt.world.state import BallState, Frame, RobotState
 
-_FRAME = tuple(Frame.__dataclass_fields__)
-_BALL = tuple(BallState.__dataclass_fields__)
-_ROBOT = tuple(RobotState.__dataclass_fields__)
+_FRAME_FIELDS = tuple(Frame.__dataclass_fields__)
+_BALL_FIELDS = tuple(BallState.__dataclass_fields__)
+_ROBOT_FIELDS = tuple(RobotState.__dataclass_fields__)
 _GAME = tuple(GameState.__dataclass_fields__)
-_STATUS = tuple(TeamStatus.__dataclass_fields__)
+_STATUS_FIELDS = tuple(TeamStatus.__dataclass_fields__)
 _frame, _ball, _game, _status = (
-    attrgetter(*_FRAME),
-    attrgetter(*_BALL),
+    attrgetter(*_FRAME_FIELDS),
+    attrgetter(*_BALL_FIELDS),
     attrgetter(*_GAME),
-    attrgetter(*_STATUS),
+    attrgetter(*_STATUS_FIELDS),
 )
 
 
@@ -59,14 +59,14 @@ class KeptView:
             # An attribute was deleted, or its new value does not compare to a boolean.
             pass
         frame, ball, robots, game, blue, yellow, _ = self._before
-        changed = _restore(self._view, "", _FRAME, frame)
-        changed += _restore(self._the_ball, "ball.", _BALL, ball)
+        changed = _restore(self._view, "", _FRAME_FIELDS, frame)
+        changed += _restore(self._the_ball, "ball.", _BALL_FIELDS, ball)
         changed += _restore(self._game, "game.", _GAME, game)
         for team, status, values in zip(("blue", "yellow"), self._teams, (blue, yellow), strict=True):
-            changed += _restore(status, f"game.{team}.", _STATUS, values)
+            changed += _restore(status, f"game.{team}.", _STATUS_FIELDS, values)
         for i, (robot, values) in enumerate(zip(self._robots, robots, strict=True)):
             place = f"own[{i}]." if i < self._size else f"opponents[{i - self._size}]."
-            changed += _restore(robot, place, _ROBOT, values)
+            changed += _restore(robot, place, _ROBOT_FIELDS, values)
         for it, now, before in zip(self._settings.values(), self._values, self._values_before, strict=True):
             changed += [
                 f"{type(it).__name__}.{name}"

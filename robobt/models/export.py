@@ -35,12 +35,12 @@ from robobt.models.policy import load_policy, quiet
 MAX_EXPORT_SIZE = 2**20
 """A skill's network is small; a file longer than this is a mistake [bytes]."""
 
-TOLERANCE = 1e-6
+EXPORT_TOLERANCE = 1e-6
 """Largest difference of any output between a TorchScript file and its network."""
 
-_ROUNDING = 1e-5
+_ONNX_ROUNDING = 1e-5
 """Largest difference for ONNX, as a share of the largest output."""
-_SAMPLES = 1000
+_COMPARED_INPUTS = 1000
 _MANGLED = re.compile(rb"\.___torch_mangle_\d+")
 
 
@@ -189,11 +189,11 @@ def _compare(module: nn.Module, card: ModelCard, format_: Format, written: Path,
         policy = load_policy(written)
     except ModelError as error:
         raise ModelError(str(error).replace(str(written), str(path))) from error
-    inputs = torch.from_numpy(_inputs(card, _SAMPLES))
+    inputs = torch.from_numpy(_inputs(card, _COMPARED_INPUTS))
     with torch.no_grad():
         expected: Tensor = module(inputs)
     # Another runtime adds up in another order.
-    allowed = TOLERANCE if format_ == "torchscript" else _ROUNDING * float(expected.abs().max())
+    allowed = EXPORT_TOLERANCE if format_ == "torchscript" else _ONNX_ROUNDING * float(expected.abs().max())
     off = float(np.abs(policy(inputs.numpy()) - expected.numpy()).max())
     if not off <= allowed:
         raise ModelError(f"{path}: the file's answers are {off:.2g} off those of the network")

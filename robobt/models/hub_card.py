@@ -11,7 +11,7 @@ from robobt.config.yaml import write_yaml
 from robobt.models.card import Measured, ModelCard
 from robobt.models.file import ModelFile
 
-_TASKS = {"policy": "reinforcement-learning", "shot_predictor": "tabular-classification"}
+_HUB_TASKS = {"policy": "reinforcement-learning", "shot_predictor": "tabular-classification"}
 _HELD_OUT = {"policy": "starts that training never saw", "shot_predictor": "shots that training never saw"}
 
 
@@ -48,7 +48,7 @@ def hub_metadata(card: ModelCard, licence: str = "") -> dict[str, Any]:
         card: the model's card.
         licence: as in :func:`hub_page`.
     """
-    task = _TASKS[card.kind]
+    task = _HUB_TASKS[card.kind]
     tags = [task, "robotics", "robocup", "small-size-league", card.skill, card.algorithm]
     metadata: dict[str, Any] = {
         "library_name": "robobt",

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from robobt.config.errors import one_line
 from robobt.models.card import Kind, ModelCard
-from robobt.models.checks.limits import BATCH
+from robobt.models.checks.limits import LARGEST_BATCH
 from robobt.models.checks.onnx_file import check_onnx
 from robobt.models.checks.source import checked_members
 from robobt.models.file import (
@@ -34,7 +34,7 @@ Floats = NDArray[np.float32]
 _MOST_LOADED = 100
 _ORDER = 1e-3
 """How far the order of summation may move an output in single precision."""
-_SLACK = 1e-4
+_OUTPUT_ROUNDING = 1e-4
 """How far an output may lie outside its range for the rounding of single precision."""
 
 
@@ -77,9 +77,11 @@ class Policy:
 
     def _in_batches(self, rows: Floats) -> Floats:
         # What a network takes may depend on how many observations there are: it was tried on these.
-        missing = -len(rows) % BATCH
+        missing = -len(rows) % LARGEST_BATCH
         filled = np.concatenate([rows, np.repeat(rows[-1:], missing, axis=0)])
-        answers = [self.network.batch(filled[at : at + BATCH]) for at in range(0, len(filled), BATCH)]
+        answers = [
+            self.network.batch(filled[at : at + LARGEST_BATCH]) for at in range(0, len(filled), LARGEST_BATCH)
+        ]
         return np.concatenate(answers)[: len(rows)]
 
     def single(self) -> Callable[[ArrayLike], list[float]]:
@@ -249,18 +251,18 @@ _LOADED: dict[tuple[Path, str], Policy] = {}
 def _probe(network: Network, card: ModelCard) -> None:
     """Try the network on zeros and on inputs of the size of those on a field."""
     size, outputs = card.observation.size, len(card.outputs)
-    inputs = np.random.default_rng(0).normal(0.0, 2.0, (BATCH, size)).astype(np.float32)
+    inputs = np.random.default_rng(0).normal(0.0, 2.0, (LARGEST_BATCH, size)).astype(np.float32)
     inputs[0] = 0.0
     low, high = card.output_range
     with _telling(f"fails on an observation of {size} entries"):
         first, again = network.batch(inputs), network.batch(inputs)
-        if first.shape != (BATCH, outputs):
-            raise ModelError(f"answers {first.shape} to {inputs.shape}, not ({BATCH}, {outputs})")
+        if first.shape != (LARGEST_BATCH, outputs):
+            raise ModelError(f"answers {first.shape} to {inputs.shape}, not ({LARGEST_BATCH}, {outputs})")
         one = network.single()
         singles = np.array([one(row.tolist()) for row in inputs])
     if not np.isfinite(first).all():
         raise ModelError("answers what is no finite number")
-    if first.min() < low - _SLACK or first.max() > high + _SLACK:
+    if first.min() < low - _OUTPUT_ROUNDING or first.max() > high + _OUTPUT_ROUNDING:
         raise ModelError(f"answers {first.min():.3g} to {first.max():.3g}, not within [{low:g}, {high:g}]")
     if not np.array_equal(first, again):
         raise ModelError("does not answer the same twice")

@@ -33,9 +33,9 @@ def fields(data: bytes) -> Iterator[tuple[int, int, bytes]]:
         elif kind == 5:
             end = place + 4
         else:
-            raise ValueError(_FOREIGN)
+            raise ValueError(_NO_MODEL_FILE)
         if number == 0 or end > len(data):
-            raise ValueError(_FOREIGN)
+            raise ValueError(_NO_MODEL_FILE)
         yield number, begin, data[place:end]
         place = end
     raise ValueError("holds more than a model does")
@@ -56,7 +56,7 @@ def _varint(data: bytes, place: int) -> tuple[int, int]:
         value |= (byte & 0x7F) << shift
         if byte < 0x80:
             return value, place
-    raise ValueError(_FOREIGN)
+    raise ValueError(_NO_MODEL_FILE)
 
 
 def _encoded(value: int) -> bytes:
@@ -68,4 +68,4 @@ def _encoded(value: int) -> bytes:
     return bytes(out)
 
 
-_FOREIGN = "is neither a TorchScript archive nor an ONNX file, or is cut short"
+_NO_MODEL_FILE = "is neither a TorchScript archive nor an ONNX file, or is cut short"

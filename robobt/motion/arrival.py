@@ -19,16 +19,15 @@ from robobt.world.ball_model import way_in
 from robobt.world.compiled import compiled, records
 from robobt.world.geometry import FloatArray
 from robobt.world.records import BALL, MEETING, MOVER, Ball, Meeting, Mover, mover_records
-from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS
+from robobt.world.state import TOUCH_DISTANCE
 
-STEP = 0.1
+MEETING_STEP = 0.1
 """Time between the places at which a ball may be met [s]."""
 
-_HALVINGS = 7
-_DRIFT = 0.15
+_TIME_HALVINGS = 7
+_NEGLIGIBLE_DRIFT = 0.15
 """Sideways speed that is ignored [m/s]."""
-_BODY = ROBOT_RADIUS + BALL_RADIUS
-_HORIZON = 4.0
+_MEETING_HORIZON = 4.0
 
 
 @compiled
@@ -90,11 +89,11 @@ def time_to(mover: Mover, x: float, y: float, slack: float) -> float:
     along = ux * mover.vx + uy * mover.vy
     across = abs(ux * mover.vy - uy * mover.vx)
     gap -= slack
-    if across < _DRIFT:
+    if across < _NEGLIGIBLE_DRIFT:
         return axis_time(gap, along, top, acceleration, braking)
     low, high = 0.0, 0.5 * pi
     time = 0.0
-    for _ in range(_HALVINGS):
+    for _ in range(_TIME_HALVINGS):
         share = 0.5 * (low + high)
         c, s = cos(share), sin(share)
         ahead = axis_time(gap, along, top * c, acceleration * c, braking * c)
@@ -117,12 +116,15 @@ def out_of_reach(mover: Mover, x: float, y: float, fastest: float, time: float) 
     """
     dx, dy = x - mover.x, y - mover.y
     gap = hypot(dx, dy)
-    if gap - _BODY >= fastest * time + 1e-6:
+    if gap - TOUCH_DISTANCE >= fastest * time + 1e-6:
         return True
-    if gap <= _BODY or fastest > mover.max_speed:
+    if gap <= TOUCH_DISTANCE or fastest > mover.max_speed:
         return False
     along = (dx * mover.vx + dy * mover.vy) / gap
-    return axis_time(gap - _BODY, along, mover.max_speed, mover.acceleration, mover.braking) > time + 1e-6
+    return (
+        axis_time(gap - TOUCH_DISTANCE, along, mover.max_speed, mover.acceleration, mover.braking)
+        > time + 1e-6
+    )
 
 
 @compiled
@@ -166,7 +168,7 @@ def _path(
     ball: Ball, rolling: float, slide: float, roll: float, half_length: float, half_width: float
 ) -> Sequence[Meeting]:
     """Return the ball's positions at each step, up to the last place to meet it."""
-    path: Sequence[Meeting] = records(int(_HORIZON / STEP) + 2, MEETING)
+    path: Sequence[Meeting] = records(int(_MEETING_HORIZON / MEETING_STEP) + 2, MEETING)
     speed = hypot(ball.vx, ball.vy)
     ux, uy = 0.0, 0.0
     if speed > 0.0:
@@ -175,12 +177,12 @@ def _path(
     while True:
         x, y = ball.x + way * ux, ball.y + way * uy
         path[last].time, path[last].x, path[last].y = time, x, y
-        further = way_in(time + STEP, speed, rolling, slide, roll)
+        further = way_in(time + MEETING_STEP, speed, rolling, slide, roll)
         gone = abs(x) > half_length or abs(y) > half_width
-        if gone or further - way < 0.02 or time >= _HORIZON:
+        if gone or further - way < 0.02 or time >= _MEETING_HORIZON:
             break
         last += 1
-        time += STEP
+        time += MEETING_STEP
         way = further
     return path[: last + 1]
 
@@ -195,7 +197,7 @@ def _meet(mover: Mover, path: Sequence[Meeting], meeting: Meeting) -> None:
         at = path[k]
         # Most steps are out of its reach, which can be checked without computing the arrival time.
         if k == last or not out_of_reach(mover, at.x, at.y, fastest, at.time):
-            late = time_to(mover, at.x, at.y, _BODY) - at.time
+            late = time_to(mover, at.x, at.y, TOUCH_DISTANCE) - at.time
             if k == last or late <= 0.0:
                 break
         k += 1
@@ -204,5 +206,5 @@ def _meet(mover: Mover, path: Sequence[Meeting], meeting: Meeting) -> None:
         meeting.time += late
     elif k > 0:
         earlier = path[k - 1]
-        before = time_to(mover, earlier.x, earlier.y, _BODY) - earlier.time
-        meeting.time += STEP * late / (before - late)
+        before = time_to(mover, earlier.x, earlier.y, TOUCH_DISTANCE) - earlier.time
+        meeting.time += MEETING_STEP * late / (before - late)

@@ -10,7 +10,7 @@ from robobt.world.state import Frame
 
 _OLDEST = 0.2
 """Frames farther apart allow no conclusion about the deceleration [s]."""
-_KICKED = 2.0
+_KICK_ACCELERATION = 2.0
 """A ball that speeds up faster than this has been hit [m/s^2]."""
 _GUESS = 0.8
 """Share of its speed at which a ball will roll if its kick was not seen."""
@@ -34,7 +34,7 @@ def rolling_after(
     if not 0.0 < elapsed < _OLDEST:
         return speed
     deceleration = (before - speed) / elapsed
-    if deceleration < -_KICKED:
+    if deceleration < -_KICK_ACCELERATION:
         return share * speed
     if deceleration < 0.5 * (slide + roll):
         return speed

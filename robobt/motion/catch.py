@@ -15,19 +15,19 @@ from robobt.world.state import BallState, RobotState
 MOUTH = 0.0965
 """Distance from the robot's centre to a ball at its front [m]."""
 
-_SHARE = 0.8
+_GIVING_SHARE = 0.8
 """Share of its acceleration that a robot plans with to back off."""
 
 _SETTLES = 0.1
 """Time constant of the final approach to the line [s]."""
 
-_LEAST = 0.3
+_LEAST_GIVING_SHARE = 0.3
 """Share of its acceleration that a robot always uses to back off."""
 
 _CARRY = 0.7
 """Braking distance with the ball [m]; the rules allow 1 m of dribbling."""
 
-_SLACK = 0.8
+_MEETING_SHARE = 0.8
 """Share of the catch speed at which the ball is met."""
 
 
@@ -50,18 +50,18 @@ def catch(me: RobotState, ball: BallState, limits: RobotLimits, period: float) -
     leftward = me.vy * ux - me.vx * uy
     stands = period + 2.0 * me.limits.reaction
     step = limits.acceleration * stands
-    gentle = _SHARE * limits.acceleration
+    gentle = _GIVING_SHARE * limits.acceleration
     most = min(limits.max_speed, abs(left) / _SETTLES)
     across = side * approach_speed(side * left, side * leftward, most, gentle, gentle, stands)
     # The wheels' acceleration is shared: first onto the line, the remainder along it.
     across = leftward + min(step, max(-step, across - leftward))
-    slow = _SLACK * me.limits.receives
-    closing = sqrt(slow * slow + 2.0 * _SHARE * limits.acceleration * gap)
+    slow = _MEETING_SHARE * me.limits.receives
+    closing = sqrt(slow * slow + 2.0 * _GIVING_SHARE * limits.acceleration * gap)
     # The speed is limited so that the robot stops before it has carried the ball too far.
-    most = min(limits.max_speed, sqrt(2.0 * _SHARE * me.limits.hold_acceleration * _CARRY))
+    most = min(limits.max_speed, sqrt(2.0 * _GIVING_SHARE * me.limits.hold_acceleration * _CARRY))
     away = min(most, max(0.0, speed - closing))
     onward = me.vx * ux + me.vy * uy
-    rest = max(_LEAST * step, sqrt(max(0.0, step * step - (across - leftward) ** 2)))
+    rest = max(_LEAST_GIVING_SHARE * step, sqrt(max(0.0, step * step - (across - leftward) ** 2)))
     away = onward + min(rest, max(-rest, away - onward))
     vx, vy = ux * away - uy * across, uy * away + ux * across
     order = command(me, vx, vy, turn_rate(me, atan2(-uy, -ux), limits, period), limits, period)

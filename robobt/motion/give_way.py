@@ -15,19 +15,19 @@ from robobt.world.geometry import FloatArray, Point
 from robobt.world.records import ROBOT, Mover, Robot, mover_records, movers_of, robot_of
 from robobt.world.state import ROBOT_RADIUS, Frame, RobotState
 
-_CLOSING = 1.0
+_OPPONENT_CLOSING_SPEED = 1.0
 """Closing speed at which opponents may touch [m/s]."""
 
-_GENTLY = 0.3
+_MATE_CLOSING_SPEED = 0.3
 """Closing speed at which team-mates may touch, who gain nothing by a collision [m/s]."""
 
-_BRAKING = 2.0
+_GIVE_WAY_BRAKING = 2.0
 """Deceleration used, less than any robot is capable of [m/s^2]."""
 
-_LOOK = 1.5
+_WATCHED_GAP = 1.5
 """Opponents with a wider gap are left out [m]."""
 
-_IN_PLAY = 1.3
+_IN_PLAY_CLOSING_SPEED = 1.3
 """Closing speed at which opponents may touch while the ball is in play, some way below the rules' [m/s]."""
 
 _SLOWER = 0.4
@@ -79,7 +79,10 @@ def slowed_in_play(me: Robot, velocity: Point, others: Sequence[Mover], braking:
         if gap < 0.0:
             continue
         coming = -(nx * other.vx + ny * other.vy)
-        most = max(coming - _SLOWER, sqrt(_IN_PLAY * _IN_PLAY + 2.0 * braking * gap) - coming)
+        most = max(
+            coming - _SLOWER,
+            sqrt(_IN_PLAY_CLOSING_SPEED * _IN_PLAY_CLOSING_SPEED + 2.0 * braking * gap) - coming,
+        )
         towards = nx * vx + ny * vy
         if towards > most:
             vx, vy = vx - (towards - most) * nx, vy - (towards - most) * ny
@@ -110,8 +113,8 @@ def slowed_towards(me: Robot, velocity: Point, others: Sequence[Mover], skip: in
         if i == skip or gap < 0.0:
             continue
         coming = max(0.0, -(nx * other.vx + ny * other.vy))
-        touching = _GENTLY if i < mates else _CLOSING
-        most = max(0.0, sqrt(touching * touching + 2.0 * _BRAKING * gap) - coming)
+        touching = _MATE_CLOSING_SPEED if i < mates else _OPPONENT_CLOSING_SPEED
+        most = max(0.0, sqrt(touching * touching + 2.0 * _GIVE_WAY_BRAKING * gap) - coming)
         towards = nx * vx + ny * vy
         if towards > most:
             vx, vy = vx - (towards - most) * nx, vy - (towards - most) * ny
@@ -125,7 +128,7 @@ def _meeting(me: Robot, vx: float, vy: float, other: Mover) -> tuple[float, floa
     dx, dy = other.x - me.x, other.y - me.y
     centres = hypot(dx, dy)
     gap = max(0.0, centres - 2.0 * ROBOT_RADIUS)
-    if gap > _LOOK or centres == 0.0:
+    if gap > _WATCHED_GAP or centres == 0.0:
         return -1.0, 0.0, 0.0
     nx, ny = dx / centres, dy / centres
     across = abs(nx * (vy - other.vy) - ny * (vx - other.vx))

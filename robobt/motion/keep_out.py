@@ -15,25 +15,25 @@ from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS, Frame, RobotState
 _OUTSIDE = ROBOT_RADIUS + 0.02
 """Distance of a robot's centre from an area [m]."""
 
-_NEAR, _AHEAD = 0.3, 0.4
+_WATCHED_BALL_DISTANCE, _WATCHED_BALL_TIME = 0.3, 0.4
 """Distance of the ball, or time until the robot may meet it, within which this applies [m, s]."""
 
-_BRAKING = 2.0
+_AREA_BRAKING = 2.0
 """Deceleration before an area, less than any robot is capable of [m/s^2]."""
 
-_FAR = 2.5
+_WATCHED_AREA_DISTANCE = 2.5
 """Distance from which any robot can brake before an area [m]."""
 
 _WAY_OUT, _FASTEST_OUT = 8.0, 2.0
 """Speed per metre, and top speed, of a robot that leaves an area after being pushed in [1/s, m/s]."""
 
-_INSIDE = 0.02 - ROBOT_RADIUS
+_WHOLLY_INSIDE = 0.02 - ROBOT_RADIUS
 """Distance of the centre from the area's edge at which a robot is about fully inside [m]."""
 
 _LAG = 0.2
 """A robot too fast for braking in time by this much keeps its speed along the area [m/s]."""
 
-_CLEAR = ROBOT_RADIUS + BALL_RADIUS + 0.03
+_CLEAR_OF_BALL = ROBOT_RADIUS + BALL_RADIUS + 0.03
 """A robot fully inside moves away from a ball closer to its centre than this [m]."""
 
 
@@ -52,17 +52,17 @@ def keep_out(frame: Frame, me: RobotState, order: RobotCommand) -> RobotCommand:
         return order
     ball, field = frame.ball, frame.field
     dx, dy = ball.x - me.x, ball.y - me.y
-    if abs(me.x) < field.half_length - field.defense_depth - _FAR:
+    if abs(me.x) < field.half_length - field.defense_depth - _WATCHED_AREA_DISTANCE:
         return order
     gap = hypot(dx, dy)
-    if gap > _NEAR + _AHEAD * (ball.speed + me.speed):
+    if gap > _WATCHED_BALL_DISTANCE + _WATCHED_BALL_TIME * (ball.speed + me.speed):
         return order
     side = 1.0 if me.x > 0.0 else -1.0
     off, nx, ny = _way_out(field, side * me.x, me.y)
     nx *= side
     slack = off - _OUTSIDE
-    outwards = -sqrt(2.0 * _BRAKING * slack) if slack > 0.0 else min(_FASTEST_OUT, -_WAY_OUT * slack)
-    if side < 0.0 and off < _INSIDE and 0.0 < gap < _CLEAR:
+    outwards = -sqrt(2.0 * _AREA_BRAKING * slack) if slack > 0.0 else min(_FASTEST_OUT, -_WAY_OUT * slack)
+    if side < 0.0 and off < _WHOLLY_INSIDE and 0.0 < gap < _CLEAR_OF_BALL:
         nx, ny = -dx / gap, -dy / gap
     c, s = cos(me.heading), sin(me.heading)
     vx, vy = c * order.vx - s * order.vy, s * order.vx + c * order.vy

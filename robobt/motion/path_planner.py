@@ -20,7 +20,7 @@ import numpy as np
 from robobt.motion.give_way import slowed_towards
 from robobt.motion.pilot import command_law, turn_law, wanted_velocity
 from robobt.motion.scene import (
-    AREA_GAP,
+    ROBOT_AREA_GAP,
     Freedom,
     allowed_place,
     from_ball,
@@ -55,7 +55,7 @@ PATHS, TARGETS = "paths", "targets"
 
 _MOST_LEGS = 6
 
-_LOOK_AHEAD = 0.4
+_OBSTACLE_LOOK_AHEAD = 0.4
 """Longest time an obstacle is moved ahead along its velocity [s]."""
 _HEADSTRONG = 0.5
 """Additional length allowed for the present side of a detour [m]."""
@@ -296,7 +296,7 @@ def _round_areas(trip: Trip, target: Point, scene: Scene) -> tuple[float, float,
     goal_x, goal_y, corner_first = _round_area(scene, x, y, target[0], target[1], scene.their_gap)
     if trip.goalkeeper == 0.0 and not corner_first:
         goal_x, goal_y, corner_first = _round_area(
-            scene, -x, y, -target[0], target[1], ROBOT_RADIUS + AREA_GAP
+            scene, -x, y, -target[0], target[1], ROBOT_RADIUS + ROBOT_AREA_GAP
         )
         goal_x = -goal_x
     return goal_x, goal_y, corner_first
@@ -322,7 +322,7 @@ def _round_area(
     if max(ya, yb) <= -side or min(ya, yb) >= side:
         return gx, gy, False
     beside = y if x > front else gy
-    return front - AREA_GAP, side + AREA_GAP if beside > 0.0 else -side - AREA_GAP, True
+    return front - ROBOT_AREA_GAP, side + ROBOT_AREA_GAP if beside > 0.0 else -side - ROBOT_AREA_GAP, True
 
 
 @compiled
@@ -343,13 +343,13 @@ def _obstacles(
         for i, other in enumerate(movers):
             gap = hypot(other.x - x, other.y - y)
             if i != skip and gap < reach and (moving or not is_moving(other)):
-                ahead, circle = min(_LOOK_AHEAD, gap * pace), circles[count]
+                ahead, circle = min(_OBSTACLE_LOOK_AHEAD, gap * pace), circles[count]
                 circle.x, circle.y = other.x + other.vx * ahead, other.y + other.vy * ahead
                 circle.radius = STANDS_APART
                 count += 1
     ball_radius = from_ball(trip, scene)
     if ball_radius > 0.0:
-        ahead, circle = min(_LOOK_AHEAD, hypot(ball.x - x, ball.y - y) * pace), circles[count]
+        ahead, circle = min(_OBSTACLE_LOOK_AHEAD, hypot(ball.x - x, ball.y - y) * pace), circles[count]
         circle.x, circle.y = ball.x + ball.vx * ahead, ball.y + ball.vy * ahead
         circle.radius = ball_radius
         count += 1

@@ -34,7 +34,7 @@ ROBOBULLS_LIMITS = RobotLimits(
 """Driving limits of RoboBulls' published code (PilotOmni and config/motion.yaml)."""
 
 
-_STRAIGHT = 0.25
+_IGNORED_SIDEWAYS_SHARE = 0.25
 """Sideways motion that stops within this share of a period is left out of the plan."""
 
 _ACROSS_FIRST = 1.5
@@ -198,7 +198,7 @@ def wanted_velocity(
         braking = along(given.braking, given.lateral_braking, bearing)
         ahead, across = ux * me.vx + uy * me.vy, ux * me.vy - uy * me.vx
         distance += final_speed * final_speed / (2.0 * braking)
-        if abs(across) < _STRAIGHT * braking * stands:
+        if abs(across) < _IGNORED_SIDEWAYS_SHARE * braking * stands:
             ahead = approach_speed(distance, ahead, top, acceleration, braking, stands)
             across = 0.0
         else:

@@ -18,7 +18,7 @@ from robobt.world.records import SCENE, Mover, Scene, Trip
 from robobt.world.rules import AREA_DISTANCE, STOP_DISTANCE, STOP_SPEED, in_area
 from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS, Frame, RobotState
 
-AREA_GAP = 0.02
+ROBOT_AREA_GAP = 0.02
 """Distance from a defence area to a robot that may not enter it [m]."""
 
 BALL_GAP = 0.01
@@ -56,7 +56,7 @@ def scene_of(frame: Frame) -> FloatArray:
         return made
     field, ball, game = frame.field, frame.ball, frame.game
     stopped, in_play, late = game.stopped, game.in_play, game.action_time
-    extra = AREA_DISTANCE if stopped or game.restart is not None else AREA_GAP
+    extra = AREA_DISTANCE if stopped or game.restart is not None else ROBOT_AREA_GAP
     insists = 0.0
     if late is not None and late < 0.0 and not in_play:
         # The match waits: a robot that sways between two similar paths tries one for a while, then the other.
@@ -141,7 +141,7 @@ def allowed_place(trip: Trip, scene: Scene) -> Point:
         return (x, y)
     x, y = _expelled(scene, x, y, scene.their_gap)
     if trip.goalkeeper == 0.0:
-        x, y = _expelled(scene, -x, y, ROBOT_RADIUS + AREA_GAP)
+        x, y = _expelled(scene, -x, y, ROBOT_RADIUS + ROBOT_AREA_GAP)
         x = -x
     return (x, y)
 
@@ -193,7 +193,7 @@ def is_open(trip: Trip, scene: Scene, x: float, y: float, their_gap: float) -> b
         return False
     if trip.placing > 0.0:
         return True
-    if in_area(x, y, half_length, depth, width, their_gap - AREA_GAP):
+    if in_area(x, y, half_length, depth, width, their_gap - ROBOT_AREA_GAP):
         return False
     return trip.goalkeeper > 0.0 or not in_area(-x, y, half_length, depth, width, ROBOT_RADIUS)
 

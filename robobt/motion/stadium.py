@@ -16,10 +16,10 @@ from robobt.world.geometry import (
 from robobt.world.rules import STOP_DISTANCE
 from robobt.world.state import ROBOT_RADIUS, Frame, RobotState
 
-_MARGIN = 0.06
+_STADIUM_MARGIN = 0.06
 """Margin outside it, because a robot does not stop at once [m]."""
 
-_CLEAR = 0.1
+_ESCAPE_DISTANCE = 0.1
 """Distance beyond the margin of a leaving robot's target, so that it does not creep [m]."""
 
 
@@ -34,13 +34,13 @@ def outside_stadium(frame: Frame, me: RobotState, goal: Point) -> Point:
     if game.restart is not Restart.BALL_PLACEMENT or game.restart_team is frame.team or spot is None:
         return goal
     ball = frame.ball.position
-    keep = STOP_DISTANCE + ROBOT_RADIUS + _MARGIN
+    keep = STOP_DISTANCE + ROBOT_RADIUS + _STADIUM_MARGIN
     here = closest_point_on_segment(me.position, ball, spot)
     gap = distance(here, me.position)
     if gap < keep and segment_distance(goal, ball, spot) >= keep:
         return goal
     if 0.0 < gap < keep:
-        share = (keep + _CLEAR) / gap
+        share = (keep + _ESCAPE_DISTANCE) / gap
         return (here[0] + share * (me.x - here[0]), here[1] + share * (me.y - here[1]))
     if segments_distance(me.position, goal, ball, spot) < keep:
         return me.position

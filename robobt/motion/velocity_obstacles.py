@@ -14,7 +14,7 @@ from collections.abc import Sequence
 from math import cos, hypot, inf, pi, sin
 from typing import Protocol
 
-from robobt.motion.scene import AREA_GAP, from_ball, is_open, row_of
+from robobt.motion.scene import ROBOT_AREA_GAP, from_ball, is_open, row_of
 from robobt.world.avoiding import MARGIN, free_time
 from robobt.world.compiled import compiled, record_dtype, records
 from robobt.world.geometry import Point
@@ -27,7 +27,7 @@ MOVES = 0.2
 STANDS_APART, MOVES_APART = 2.0 * ROBOT_RADIUS + 0.03, 2.0 * ROBOT_RADIUS + MARGIN
 """Least distances between centres, to standing and to moving robots [m]."""
 
-_HORIZON = 1.0
+_FREE_TIME_HORIZON = 1.0
 """Time for which a velocity has to be free [s]."""
 
 _PENALTY = 0.67
@@ -36,10 +36,10 @@ _PENALTY = 0.67
 _WAYS, _SLOW_WAYS = 16, 8
 """Number of evenly spaced directions tried at the wanted speed and at half of it."""
 
-_SLOW = 0.1
+_STANDING_SPEED = 0.1
 """A robot slower than this does not evade [m/s]."""
 
-_SOON = 0.05
+_SHORTEST_FREE_TIME = 0.05
 """Times shorter than this count as equal [s]."""
 
 
@@ -84,9 +84,9 @@ def clear_velocity(
     x, y = me.x, me.y
     vx, vy = wanted
     speed = hypot(vx, vy)
-    if speed < _SLOW:
+    if speed < _STANDING_SPEED:
         return wanted
-    needed = min(_HORIZON, hypot(goal[0] - x, goal[1] - y) / speed)
+    needed = min(_FREE_TIME_HORIZON, hypot(goal[0] - x, goal[1] - y) / speed)
     if not _any_moves(movers, row_of(trip, scene, movers), x, y, speed):
         return wanted
     near = _obstacles(trip, scene, movers, speed, needed, goal)
@@ -97,7 +97,7 @@ def clear_velocity(
         return wanted
     bounded = is_open(trip, scene, x, y, scene.their_gap)
     # The check leaves out a little of the gap to their area, which the rules demand in a restart.
-    their_gap = scene.their_gap + 2.0 * AREA_GAP if scene.in_play == 0.0 else scene.their_gap
+    their_gap = scene.their_gap + 2.0 * ROBOT_AREA_GAP if scene.in_play == 0.0 else scene.their_gap
     best, least = wanted, inf
     for way in range(_WAYS + _SLOW_WAYS + 1):
         share, angle = 0.0, 0.0
@@ -107,7 +107,7 @@ def clear_velocity(
             share, angle = 0.5, 2.0 * pi * (way - _WAYS) / _SLOW_WAYS
         ahead, aside = share * cos(angle), share * sin(angle)
         tried = vx * ahead - vy * aside, vy * ahead + vx * aside
-        free = max(_SOON, _free_for(near, me, tried, faster, slower, lag))
+        free = max(_SHORTEST_FREE_TIME, _free_for(near, me, tried, faster, slower, lag))
         cost = hypot(1.0 - ahead, aside) + _PENALTY * max(0.0, 1.0 / free - 1.0 / needed)
         if cost >= least:
             continue
@@ -136,7 +136,7 @@ def _any_moves(movers: Sequence[Mover], skip: int, x: float, y: float, speed: fl
 @compiled
 def _is_near(mover: Mover, x: float, y: float, speed: float) -> bool:
     """Return whether a robot at (x, y) that drives so fast can meet this one soon enough to matter."""
-    reach = MOVES_APART + (speed + hypot(mover.vx, mover.vy)) * _HORIZON
+    reach = MOVES_APART + (speed + hypot(mover.vx, mover.vy)) * _FREE_TIME_HORIZON
     return hypot(mover.x - x, mover.y - y) < reach
 
 

@@ -15,7 +15,7 @@ from robobt.skills.team.best_field_position import BestFieldPosition
 from robobt.tree import Behaviour
 from robobt.tree.parameters import formerly
 
-_STRONG: Rater = {"name": "expected_goal", "model": "shot_expected_strong"}
+_STRONG_EXPECTED_GOAL: Rater = {"name": "expected_goal", "model": "shot_expected_strong"}
 
 
 @formerly(
@@ -25,7 +25,7 @@ _STRONG: Rater = {"name": "expected_goal", "model": "shot_expected_strong"}
 @PLAYS.register("attack_expected")
 def attack_expected(
     *,
-    rater: Rater = _STRONG,
+    rater: Rater = _STRONG_EXPECTED_GOAL,
     min_score: float = 0.9,
     last_resort: float = 0.3,
     patience: float = 10.0,

@@ -16,7 +16,7 @@ from robobt.skills.team.best_field_position import BestFieldPosition
 from robobt.tree import Behaviour, FailureIsSuccess
 from robobt.tree.parameters import formerly
 
-_STRONG: Rater = {"name": "nn_filtered", "model": "shot_nn_strong"}
+_STRONG_NETWORK_FILTER: Rater = {"name": "nn_filtered", "model": "shot_nn_strong"}
 
 
 @formerly(
@@ -27,7 +27,7 @@ _STRONG: Rater = {"name": "nn_filtered", "model": "shot_nn_strong"}
 @PLAYS.register("attack_nn")
 def attack_nn(
     *,
-    rater: Rater = _STRONG,
+    rater: Rater = _STRONG_NETWORK_FILTER,
     max_distance: float | None = None,
     shot_speed: float | None = None,
     speed: float = 1.0,

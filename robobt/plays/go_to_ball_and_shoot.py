@@ -12,13 +12,13 @@ from robobt.skills.ball.go_to_ball import GoToBall, GoToBallPolicy
 from robobt.skills.ball.kick_to_target import KickToTarget
 from robobt.skills.ball.learned_control import policies_by_name
 from robobt.skills.ball.pick_up_ball import PickUpBall
-from robobt.skills.ball.shoot import POLICIES, Policy, Shoot
+from robobt.skills.ball.shoot import SHOOT_POLICIES, Policy, Shoot
 from robobt.skills.conditions.has_ball import HasBall
 from robobt.tree import Behaviour
 from robobt.tree.parameters import formerly
 
 _Shot: TypeAlias = Annotated[
-    str | Mapping[str, object] | Policy, policies_by_name(POLICIES, "kick_to_target")
+    str | Mapping[str, object] | Policy, policies_by_name(SHOOT_POLICIES, "kick_to_target")
 ]
 
 

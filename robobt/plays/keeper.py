@@ -17,7 +17,7 @@ from robobt.skills.stop import Stop
 from robobt.tree import Behaviour, Inverter
 from robobt.world.game import Restart
 
-_KICKED = 2.5
+_PENALTY_SHOT_SPEED = 2.5
 """A ball that approaches the goal faster than this counts as kicked [m/s]."""
 
 
@@ -47,7 +47,7 @@ def save_penalty(speed: float) -> Behaviour:
     """Come out towards the kicker of a penalty kick; get onto the line of a kicked ball."""
     return first_of(
         "save",
-        when("shot", ShotComing(min_speed=_KICKED, margin=0.1), BlockShot(speed=speed)),
+        when("shot", ShotComing(min_speed=_PENALTY_SHOT_SPEED, margin=0.1), BlockShot(speed=speed)),
         CloseDown(speed=speed),
     )
 

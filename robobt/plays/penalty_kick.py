@@ -17,7 +17,11 @@ from robobt.skills.team.best_field_position import BestFieldPosition
 from robobt.tree import Behaviour
 from robobt.tree.parameters import formerly
 
-_STRONG: Rater = {"name": "expected_goal", "model": "shot_expected_strong", "threshold": 0.85}
+_CONFIDENT_EXPECTED_GOAL: Rater = {
+    "name": "expected_goal",
+    "model": "shot_expected_strong",
+    "threshold": 0.85,
+}
 
 
 @formerly(
@@ -27,7 +31,7 @@ _STRONG: Rater = {"name": "expected_goal", "model": "shot_expected_strong", "thr
 @PLAYS.register("penalty_kick")
 def penalty_kick(
     *,
-    rater: Rater = _STRONG,
+    rater: Rater = _CONFIDENT_EXPECTED_GOAL,
     min_score: float = 0.85,
     distance: float = 2.8,
     patience: float = 2.5,

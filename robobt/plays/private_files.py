@@ -27,7 +27,7 @@ from robobt.tree.namespace import Namespace, within
 _PREFIX = "robobt_private_"
 """Prefix of the packages of private modules."""
 
-_NAMED = re.compile(r"(?P<files>[^=]+?\.py(?:,[^=]+?\.py)*):(?P<play>[^=]+)")
+_FILES_AND_PLAY = re.compile(r"(?P<files>[^=]+?\.py(?:,[^=]+?\.py)*):(?P<play>[^=]+)")
 
 
 def split_play(name: str) -> tuple[tuple[str, ...], str]:
@@ -35,7 +35,7 @@ def split_play(name: str) -> tuple[tuple[str, ...], str]:
 
     ``old/my_team.py:striker`` has one file, ``old/skills.py,old/plays.py:striker`` has two.
     """
-    named = _NAMED.fullmatch(name)
+    named = _FILES_AND_PLAY.fullmatch(name)
     if named is None:
         return (), name
     return tuple(re.split(r"(?<=\.py),", named["files"])), named["play"]

@@ -17,11 +17,11 @@ from robobt.plays.base import PLAYS
 from robobt.plays.sources import PythonFileError, read_python
 from robobt.skills import SKILLS
 from robobt.skills.aim.raters import RATERS
-from robobt.skills.ball.go_to_ball import POLICIES
+from robobt.skills.ball.go_to_ball import GO_TO_BALL_POLICIES
 from robobt.tree import Registry
 from robobt.world.observation import OWN_OBSERVATIONS
 
-REGISTRIES: list[Registry[Any]] = [PLAYS, SKILLS, RATERS, POLICIES]
+REGISTRIES: list[Registry[Any]] = [PLAYS, SKILLS, RATERS, GO_TO_BALL_POLICIES]
 """Registries that a file may add to; if it raises, its entries are removed."""
 
 _imported: dict[Path, ModuleType] = {}

@@ -94,13 +94,13 @@ def read_sources(files: Sequence[str | Path]) -> Sources:
         found.entries.append(name)
         found.modules[name] = Source(str(path), text, package)
         roots += [root] if root not in roots else []
-    reader = _Reader(roots, found.modules)
+    reader = _ImportReader(roots, found.modules)
     for name in found.entries:
         reader.follow(name)
     return found
 
 
-class _Reader:
+class _ImportReader:
     """Reads what modules import from the folders ``roots`` into ``modules``."""
 
     def __init__(self, roots: Sequence[Path], modules: dict[str, Source]) -> None:

@@ -15,7 +15,7 @@ from robobt.sim.bodies import SLOP, fill, moment_of_inertia, until_placed, walls
 from robobt.sim.chipmunk import NO_CALLS, ROW, BodyBuffer
 from robobt.sim.contacts.solver import contact_arrays
 from robobt.sim.kernels import control_tick
-from robobt.sim.records import ARENA, COMMAND, DRIVE, KEPT, BoolArray, IntArray, RecordArray, size
+from robobt.sim.records import ARENA, COMMAND, KEPT, WHEEL_DRIVE, BoolArray, IntArray, RecordArray, size
 from robobt.sim.reports import report
 from robobt.sim.settings import SimSettings
 from robobt.world.field import FieldGeometry
@@ -200,7 +200,7 @@ class Arenas:
             vz: vertical speed [m/s].
         """
         count = self.contact.shape[1]
-        self._arrays.drives.view(DRIVE)["hinge"]["held"][arena] = 0.0
+        self._arrays.drives.view(WHEEL_DRIVE)["hinge"]["held"][arena] = 0.0
         self._read()
         row = self._arrays.bodies[arena, count]
         row[:] = 0.0

@@ -13,11 +13,11 @@ from robobt.sim.parameters import arena_parameters, wheel_parameters
 from robobt.sim.records import (
     ARENA,
     BODY,
-    DRIVE,
     FLIGHT,
     FRONT,
     KEPT,
     SEEN_BALL,
+    WHEEL_DRIVE,
     BoolArray,
     IntArray,
     size,
@@ -81,7 +81,7 @@ def arena_arrays(
     return ArenaArrays(
         states=states,
         kept=kept,
-        drives=np.zeros((n, robots, size(DRIVE))),
+        drives=np.zeros((n, robots, size(WHEEL_DRIVE))),
         bodies=bodies,
         flight=np.zeros((n, size(FLIGHT))),
         touch=np.full(n, -1, dtype=np.int64),

@@ -33,7 +33,7 @@ _RECESS = 0.025
 """Distance from the front of a mouth between jaws to the hull behind it [m]."""
 
 # Collision categories: robots meet robots as discs and the ball with their hull.
-_DISC, _HULL, _BALL, _STATIC = 1, 2, 4, 8
+_DISC_CATEGORY, _HULL_CATEGORY, _BALL_CATEGORY, _STATIC_CATEGORY = 1, 2, 4, 8
 
 Box = tuple[float, float, float, float]
 
@@ -84,7 +84,7 @@ def fill(
     for (x0, y0, x1, y1), kind in walls:
         corners = [(x0, y0), (x1, y0), (x1, y1), (x0, y1)]
         box = pymunk.Poly(space.static_body, corners)
-        _finish(box, *material[kind], _STATIC, _DISC | _BALL)
+        _finish(box, *material[kind], _STATIC_CATEGORY, _DISC_CATEGORY | _BALL_CATEGORY)
         space.add(box)
     for i in range(robots):
         robot = pymunk.Body(body.mass, moment_of_inertia(body.mass))
@@ -95,18 +95,18 @@ def fill(
                 shapes.append(pymunk.Circle(robot, part.rounding))
             else:
                 shapes.append(pymunk.Poly(robot, part.corners, radius=part.rounding))
-            _finish(shapes[-1], *part.material, _HULL, _BALL)
+            _finish(shapes[-1], *part.material, _HULL_CATEGORY, _BALL_CATEGORY)
         disc = pymunk.Circle(robot, ROBOT_RADIUS)
         bounce, rub = disc_material(settings.contact)
         # Chipmunk multiplies the two shapes' values: robots share theirs evenly.
-        _finish(disc, bounce**0.5, rub**0.5, _DISC, _DISC | _STATIC)
+        _finish(disc, bounce**0.5, rub**0.5, _DISC_CATEGORY, _DISC_CATEGORY | _STATIC_CATEGORY)
         space.add(robot, disc, *shapes)
         bodies.append(robot)
     # The ball cannot turn, because spin about the vertical axis has no effect.
     ball = pymunk.Body(settings.ball.mass, float("inf"))
     ball.position = (0.0, 0.0)
     round_ = pymunk.Circle(ball, BALL_RADIUS)
-    _finish(round_, 1.0, 1.0, _BALL, _HULL | _STATIC)
+    _finish(round_, 1.0, 1.0, _BALL_CATEGORY, _HULL_CATEGORY | _STATIC_CATEGORY)
     space.add(ball, round_)
     bodies.append(ball)
     return bodies

@@ -30,7 +30,14 @@ from robobt.world.compiled import Index, compiled_lean, record_dtype
 ROW = size(BODY)
 """Numbers of a body's row: x, y, angle, vx, vy, angular velocity."""
 
-_X, _Y, _TURN, _VX, _VY, _SPIN = _PLACES = (64, 72, 112, 80, 88, 120)
+_X_OFFSET, _Y_OFFSET, _ANGLE_OFFSET, _VX_OFFSET, _VY_OFFSET, _OMEGA_OFFSET = _BODY_OFFSETS = (
+    64,
+    72,
+    112,
+    80,
+    88,
+    120,
+)
 """Where in a ``cpBody`` the numbers of its row lie [bytes]."""
 
 
@@ -113,12 +120,12 @@ def load_bodies(places: NDArray[np.uint64], bodies: Records[Body]) -> None:
     for i in range(places.shape[0]):
         place, body = places[i], bodies[i]
         # As ``cpBodyGetPosition``, which knows no negative zero.
-        body.x = load(place + np.uint64(_X)) + 0.0
-        body.y = load(place + np.uint64(_Y)) + 0.0
-        body.heading = load(place + np.uint64(_TURN))
-        body.vx = load(place + np.uint64(_VX))
-        body.vy = load(place + np.uint64(_VY))
-        body.omega = load(place + np.uint64(_SPIN))
+        body.x = load(place + np.uint64(_X_OFFSET)) + 0.0
+        body.y = load(place + np.uint64(_Y_OFFSET)) + 0.0
+        body.heading = load(place + np.uint64(_ANGLE_OFFSET))
+        body.vx = load(place + np.uint64(_VX_OFFSET))
+        body.vy = load(place + np.uint64(_VY_OFFSET))
+        body.omega = load(place + np.uint64(_OMEGA_OFFSET))
 
 
 @compiled_lean
@@ -129,12 +136,12 @@ def store_bodies(places: NDArray[np.uint64], bodies: Records[Body]) -> None:
     """
     for i in range(places.shape[0]):
         place, body = places[i], bodies[i]
-        store(place + np.uint64(_X), body.x)
-        store(place + np.uint64(_Y), body.y)
-        store(place + np.uint64(_TURN), body.heading)
-        store(place + np.uint64(_VX), body.vx)
-        store(place + np.uint64(_VY), body.vy)
-        store(place + np.uint64(_SPIN), body.omega)
+        store(place + np.uint64(_X_OFFSET), body.x)
+        store(place + np.uint64(_Y_OFFSET), body.y)
+        store(place + np.uint64(_ANGLE_OFFSET), body.heading)
+        store(place + np.uint64(_VX_OFFSET), body.vx)
+        store(place + np.uint64(_VY_OFFSET), body.vy)
+        store(place + np.uint64(_OMEGA_OFFSET), body.omega)
 
 
 class Functions:
@@ -252,7 +259,7 @@ def _check_places() -> None:
     body = pymunk.Body(1.0, 1.0)
     body.position, body.angle, body.velocity, body.angular_velocity = (1.5, 2.5), 3.5, (4.5, 5.5), 6.5
     numbers = ffi.cast("double *", body._body)
-    if [numbers[place // 8] for place in _PLACES] != [1.5, 2.5, 3.5, 4.5, 5.5, 6.5]:
+    if [numbers[place // 8] for place in _BODY_OFFSETS] != [1.5, 2.5, 3.5, 4.5, 5.5, 6.5]:
         raise RuntimeError(
             f"pymunk {pymunk.version} keeps a body's state in other places: its structures have changed"
         )

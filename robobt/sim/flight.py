@@ -16,17 +16,14 @@ from math import sqrt
 
 from robobt.sim.records import Arena
 from robobt.sim.sweep import in_a_wall
-from robobt.world.ball_model import GRAVITY
+from robobt.world.ball_model import GRAVITY, LOWEST_HOP
 from robobt.world.compiled import compiled_lean
 from robobt.world.state import BALL_RADIUS, ROBOT_HEIGHT, ROBOT_RADIUS
-
-_LAST_APEX = 0.01
-"""Lowest hop; below it the ball rolls [m]. Source: Sumatra's model of a chip."""
 
 _STADIUM = 4
 """Number of an arena's walls around the field; the others belong to the goals."""
 
-_LEFT, _AHEAD = 0, 2
+_LEFT_WALL, _FRONT_WALL = 0, 2
 """Which of them bound y and x."""
 
 
@@ -60,7 +57,7 @@ def fly(arena: Arena, dt: float) -> bool:
     fall = sqrt(rise * rise + 2.0 * GRAVITY * (before - floor))
     left = dt - min((rise + fall) / GRAVITY, dt)
     up = settings.rebound * fall
-    ends = up * up < 2.0 * GRAVITY * _LAST_APEX
+    ends = up * up < 2.0 * GRAVITY * LOWEST_HOP
     if floor == 0.0 or not ends:
         keep = settings.first_hop if air.hops == 0.0 else settings.other_hops
         air.hops += 1.0
@@ -81,8 +78,8 @@ def fly(arena: Arena, dt: float) -> bool:
 def pass_over(arena: Arena, dt: float) -> None:
     """Move a high ball, and back where it meets a wall around the field."""
     body, ball, bounce = arena.body, arena.ball, arena.parameters.contact.wall_restitution
-    body.x, ball.vx = _along(body.x, ball.vx, ball.move_x * dt, arena.walls[_AHEAD].x0, bounce)
-    body.y, ball.vy = _along(body.y, ball.vy, ball.move_y * dt, arena.walls[_LEFT].y0, bounce)
+    body.x, ball.vx = _along(body.x, ball.vx, ball.move_x * dt, arena.walls[_FRONT_WALL].x0, bounce)
+    body.y, ball.vy = _along(body.y, ball.vy, ball.move_y * dt, arena.walls[_LEFT_WALL].y0, bounce)
 
 
 @compiled_lean

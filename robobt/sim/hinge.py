@@ -8,10 +8,10 @@ from __future__ import annotations
 
 from math import cos, sin
 
-from robobt.sim.records import Body, Drive, Hinge, Records, Wheels
+from robobt.sim.records import Body, Hinge, Records, WheelDrive, Wheels
 from robobt.world.compiled import compiled_lean
 
-_SWEEPS = 4
+_HINGE_SWEEPS = 4
 """Passes over the robots that hold the ball."""
 
 _SOFTNESS = 0.2
@@ -27,7 +27,7 @@ def take_hold(body: Body, robot: Body, hinge: Hinge) -> None:
 
 
 @compiled_lean
-def tie(robots: Records[Body], drives: Records[Drive], carrier: int, w: Wheels, dt: float) -> None:
+def tie(robots: Records[Body], drives: Records[WheelDrive], carrier: int, w: Wheels, dt: float) -> None:
     """Keep all robots that hold the ball together with the robot that carries it.
 
     Args:
@@ -40,7 +40,7 @@ def tie(robots: Records[Body], drives: Records[Drive], carrier: int, w: Wheels, 
     one = robots[carrier]
     ax, ay = _arm(one, drives[carrier].hinge)
     mass, inertia = 1.0 / w.mass, 1.0 / w.inertia
-    for _ in range(_SWEEPS):
+    for _ in range(_HINGE_SWEEPS):
         for i in range(len(robots)):
             if i == carrier or drives[i].hinge.held == 0.0:
                 continue

@@ -32,18 +32,18 @@ from robobt.sim.records import (
     BODY,
     COMMAND,
     CONTACT,
-    DRIVE,
+    CONTACT_MEMORY,
     EDGE,
     FLIGHT,
     FRONT,
     KEPT,
     MASSES,
-    MEMORY,
     MOVING,
     PART,
     SOLVER,
     TOUCH,
     WALL,
+    WHEEL_DRIVE,
     Arena,
     Body,
     Command,
@@ -59,13 +59,13 @@ from robobt.world.compiled import compiled_inline, compiled_lean
 from robobt.world.geometry import FloatArray
 from robobt.world.state import BALL_RADIUS, RECEIVED_HEIGHT, ROBOT_HEIGHT
 
-_OVERLAP = 3e-4
+_CONTACT_OVERLAP = 3e-4
 """Depth to which a swept ball is put into the object it hits, so that the solver sees the contact [m]."""
 
 _BACKING = -0.02
 """A robot slower than this along its heading backs away from the ball [m/s]."""
 
-_ELSEWHERE = 1e4
+_HIGH_BALL_PLACE = 1e4
 """Coordinate outside the arena where its space keeps balls that fly high [m]."""
 
 
@@ -83,13 +83,13 @@ def control_tick(arrays_: ArenaArrays, old_: FloatArray, new_: FloatArray, sub_s
     """
     arrays = ArenaArrays(*arrays_)
     states, flights = arrays.states.view(ARENA)[..., 0], arrays.flight.view(FLIGHT)[..., 0]
-    kept, drives = arrays.kept.view(KEPT)[..., 0], arrays.drives.view(DRIVE)[..., 0]
+    kept, drives = arrays.kept.view(KEPT)[..., 0], arrays.drives.view(WHEEL_DRIVE)[..., 0]
     bodies, touch = arrays.bodies.view(BODY)[..., 0], arrays.touch.view(TOUCH)
     history, fronts = arrays.history.view(BODY)[..., 0], arrays.fronts.view(FRONT)[..., 0]
     old, new = old_.view(COMMAND)[..., 0], new_.view(COMMAND)[..., 0]
     known = ContactArrays(*arrays.contacts)
     masses, bias = known.masses.view(MASSES)[..., 0], known.bias.view(BIAS)[..., 0]
-    memory, contacts = known.memory.view(MEMORY)[..., 0], known.contacts.view(CONTACT)[..., 0]
+    memory, contacts = known.memory.view(CONTACT_MEMORY)[..., 0], known.contacts.view(CONTACT)[..., 0]
     walls, edges = known.walls.view(WALL)[..., 0], known.edges.view(EDGE)[..., 0]
     parts, moving = known.parts.view(PART)[..., 0], known.moving.view(MOVING)[..., 0]
     shapes = Shapes(walls, edges, parts, known.solver.view(SOLVER)[0, 0])
@@ -258,7 +258,7 @@ def _move_ball(arena: Arena, solver: Solver, dt: float) -> bool:
         if share < 1.0:
             # From then on it moves with the object it met, which may move away from it.
             x, y = ball.move_x - met_x, ball.move_y - met_y
-            back = max(1.0 - share - _OVERLAP / (hypot(x, y) * dt), 0.0)
+            back = max(1.0 - share - _CONTACT_OVERLAP / (hypot(x, y) * dt), 0.0)
             body.x -= x * dt * back
             body.y -= y * dt * back
     return high
@@ -284,7 +284,7 @@ def _put_ball(arena: Arena, high: bool) -> tuple[float, float]:
     body, ball = arena.body, arena.ball
     x, y = body.x, body.y
     if high:
-        body.x, body.y = _ELSEWHERE, _ELSEWHERE
+        body.x, body.y = _HIGH_BALL_PLACE, _HIGH_BALL_PLACE
         ball.move_x = ball.move_y = 0.0
     body.vx, body.vy = ball.move_x, ball.move_y
     return x, y

@@ -10,11 +10,11 @@ from __future__ import annotations
 
 from math import cos, hypot, sin, sqrt
 
-from robobt.sim.records import Ball, Body, Command, Parameters
+from robobt.sim.records import Body, Command, Parameters, SimulatedBall
 from robobt.world.compiled import compiled_lean
 from robobt.world.records import Limits
 
-_SURE = 1.0 - 1e-9
+_ROUNDING_SHARE = 1.0 - 1e-9
 """Tolerance, so that rounding does not exaggerate a change of velocity."""
 
 
@@ -35,7 +35,7 @@ def drive(robot: Body, command: Command, limits: Limits, dt: float) -> None:
     else:
         along, across = limits.acceleration, limits.lateral_acceleration
     # A change within the weaker limit needs no further check.
-    if abs(dx) + abs(dy) > _SURE * min(along, across) * dt:
+    if abs(dx) + abs(dy) > _ROUNDING_SHARE * min(along, across) * dt:
         step = hypot(dx, dy)
         ahead = (c * dx + s * dy) / step
         aside = (c * dy - s * dx) / step
@@ -52,7 +52,7 @@ def drive(robot: Body, command: Command, limits: Limits, dt: float) -> None:
 
 
 @compiled_lean
-def friction(ball: Ball, p: Parameters, dt: float) -> None:
+def friction(ball: SimulatedBall, p: Parameters, dt: float) -> None:
     """Let a free ball slide and roll for ``dt``."""
     slide, roll, stop = p.ball.slide_deceleration, p.ball.roll_deceleration, p.ball.stop_speed
     start_x, start_y = ball.vx, ball.vy

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from math import cos, hypot, sin
 
-from robobt.sim.records import Ball, Body, Flight, Parameters
+from robobt.sim.records import Body, Flight, Parameters, SimulatedBall
 from robobt.world.compiled import compiled_lean
 from robobt.world.state import BALL_RADIUS
 
-_CLEAR = 2e-4
+_RELEASED_GAP = 2e-4
 """Gap that a ball needs to be free of the front that pushed it [m]."""
 
 _GLUE_GAP = 2e-4
@@ -29,7 +29,7 @@ def in_mouth(body: Body, robot: Body, p: Parameters, depth: float) -> bool:
 
 
 @compiled_lean
-def let_in(body: Body, ball: Ball, robot: Body, p: Parameters, dt: float) -> None:
+def let_in(body: Body, ball: SimulatedBall, robot: Body, p: Parameters, dt: float) -> None:
     """Move a ball that comes within ``dt`` to where the kicker's sensor sees it.
 
     Otherwise a fast ball would pass the sensor and bounce off within one step.
@@ -58,11 +58,11 @@ def keeps(body: Body, robot: Body, p: Parameters, held: bool) -> bool:
     if not in_mouth(body, robot, p, p.dribbler.reach):
         return False
     ahead = cos(robot.heading) * (body.x - robot.x) + sin(robot.heading) * (body.y - robot.y)
-    return held or ahead >= p.body.face + BALL_RADIUS + _CLEAR
+    return held or ahead >= p.body.face + BALL_RADIUS + _RELEASED_GAP
 
 
 @compiled_lean
-def hold(body: Body, ball: Ball, robot: Body, p: Parameters, most: float, dt: float) -> None:
+def hold(body: Body, ball: SimulatedBall, robot: Body, p: Parameters, most: float, dt: float) -> None:
     """Add the limited acceleration with which a dribbler draws the ball to its place.
 
     Args:
@@ -97,7 +97,7 @@ def hold(body: Body, ball: Ball, robot: Body, p: Parameters, most: float, dt: fl
 
 
 @compiled_lean
-def carry(body: Body, ball: Ball, robot: Body, p: Parameters, dt: float) -> None:
+def carry(body: Body, ball: SimulatedBall, robot: Body, p: Parameters, dt: float) -> None:
     """Compute the mean velocity that keeps the ball where it sits in the mouth while the robot moves."""
     c, s = cos(robot.heading), sin(robot.heading)
     px, py = body.x - robot.x, body.y - robot.y
@@ -114,7 +114,7 @@ def carry(body: Body, ball: Ball, robot: Body, p: Parameters, dt: float) -> None
 
 
 @compiled_lean
-def kick(ball: Ball, air: Flight, robot: Body, speed: float, angle: float, p: Parameters) -> None:
+def kick(ball: SimulatedBall, air: Flight, robot: Body, speed: float, angle: float, p: Parameters) -> None:
     """Send the ball along the heading; its sideways velocity stays, its spin is lost.
 
     Args:

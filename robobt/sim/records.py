@@ -82,7 +82,7 @@ class Touch:
     robot: Index
 
 
-class Ball:
+class SimulatedBall:
     """How a ball moves, and what dribblers and kickers do with it in a step.
 
     Velocity, spin as the velocity at which it would roll, turning about the vertical [m/s, rad/s]; mean
@@ -133,7 +133,7 @@ class Kept:
     cooldown: float
 
 
-class Drive:
+class WheelDrive:
     """What is kept of a robot with wheels.
 
     The acceleration that the loads follow [m/s^2], the time to the next frame [s], and how it holds the ball.
@@ -212,12 +212,12 @@ class ArenaState:
     """What is kept of an arena; a command is in force from the sub-step ``switch`` on."""
 
     switch: Index
-    ball: Ball
+    ball: SimulatedBall
     parameters: Parameters
     wheels: Wheels
 
 
-class Wall:
+class WallBox:
     """A box, its restitution and friction."""
 
     x0: float
@@ -237,7 +237,7 @@ class Edge:
     y1: float
 
 
-class Part:
+class HullPart:
     """A part of a hull: its edges, the radius of its rounded corners [m], restitution and friction."""
 
     first: float
@@ -283,7 +283,7 @@ class Bias:
     omega: float
 
 
-class Memory:
+class ContactMemory:
     """What is remembered of a pair: impulses along and across the normal [N s], and its last contact."""
 
     along: float
@@ -364,17 +364,17 @@ BODY, SEEN_BALL = ROBOT, BALL
 FLIGHT = record_dtype(Flight)
 TOUCH = record_dtype(Touch)
 KEPT = record_dtype(Kept)
-DRIVE = record_dtype(Drive)
+WHEEL_DRIVE = record_dtype(WheelDrive)
 WHEELS = record_dtype(Wheels)
 PARAMETERS = record_dtype(Parameters)
 ARENA = record_dtype(ArenaState)
-WALL = record_dtype(Wall)
+WALL = record_dtype(WallBox)
 EDGE = record_dtype(Edge)
-PART = record_dtype(Part)
+PART = record_dtype(HullPart)
 SOLVER = record_dtype(Solver)
 MASSES = record_dtype(Masses)
 BIAS = record_dtype(Bias)
-MEMORY = record_dtype(Memory)
+CONTACT_MEMORY = record_dtype(ContactMemory)
 CONTACT = record_dtype(Contact)
 MOVING = record_dtype(Moving)
 FRONT = record_dtype(Front)
@@ -386,13 +386,13 @@ class Arena(NamedTuple):
     bodies: Records[Body]  # (R + 1,), the ball's last
     robots: Records[Body]  # (R,) of those bodies
     body: Body  # the ball's
-    ball: Ball
+    ball: SimulatedBall
     air: Flight
     touch: Touch
     parameters: Parameters
     wheels: Wheels
     kept: Records[Kept]  # (R,)
-    drives: Records[Drive]  # (R,)
+    drives: Records[WheelDrive]  # (R,)
     kicked: BoolArray  # (R,) who kicked in this period
     fronts: Records[Front]  # (R,) scratch
-    walls: Records[Wall]  # (W,) relative to the arena's centre
+    walls: Records[WallBox]  # (W,) relative to the arena's centre

@@ -10,19 +10,19 @@ from robobt.world.compiled import compiled_inline, compiled_lean
 from robobt.world.geometry import FloatArray
 from robobt.world.state import BALL_RADIUS, RECEIVED_HEIGHT, ROBOT_RADIUS
 
-_TOUCH = 2e-3
+_REPORTED_TOUCH_GAP = 2e-3
 """Gap between ball and robot that still counts as a touch [m]."""
 
 
 @compiled_inline
 def note_touch(arena: Arena) -> None:
     """Record the robot that touches the ball; if several do, one that did not touch it before."""
-    body, ahead = arena.body, arena.parameters.front + BALL_RADIUS + _TOUCH
+    body, ahead = arena.body, arena.parameters.front + BALL_RADIUS + _REPORTED_TOUCH_GAP
     found = -1
     for i in range(len(arena.robots)):
         robot = arena.robots[i]
         px, py = body.x - robot.x, body.y - robot.y
-        reach = ROBOT_RADIUS + BALL_RADIUS + _TOUCH
+        reach = ROBOT_RADIUS + BALL_RADIUS + _REPORTED_TOUCH_GAP
         if px * px + py * py > reach * reach:
             continue
         if cos(robot.heading) * px + sin(robot.heading) * py > ahead:

@@ -16,7 +16,7 @@ from __future__ import annotations
 
 from math import cos, hypot, sin
 
-from robobt.sim.records import Arena, Ball, Body, Front, Parameters, Rub
+from robobt.sim.records import Arena, Body, Front, Parameters, Rub, SimulatedBall
 from robobt.world.ball_model import GRAVITY
 from robobt.world.compiled import compiled_lean
 from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS
@@ -27,25 +27,33 @@ _CONTACTS = 3
 _ROLLER = 0
 """Which of them is the roller."""
 
-_SWEEPS = 10
+_ROLLER_SWEEPS = 10
 """Passes over the contacts."""
 
-_GAP = 0.004
+_CONTACT_GAP = 0.004
 """A ball no farther than this from what it may touch is looked at [m]."""
 
 _SOFT = 0.02
 """Slower than this a ball does not bounce [m/s]."""
 
-_TURN = 2.5
+_SURFACE_SPEED_RATIO = 2.5
 """Change of a solid ball's surface speed over that of its velocity, by an impulse at its surface."""
 
-_IDLE = -1.0
+_IDLE_SURFACE = -1.0
 """Marks a surface that moves up and down with the ball."""
 
 
 @compiled_lean
 def _meet(
-    body: Body, ball: Ball, robot: Body, nx: float, ny: float, gap: float, bounce: float, rub: Rub, dt: float
+    body: Body,
+    ball: SimulatedBall,
+    robot: Body,
+    nx: float,
+    ny: float,
+    gap: float,
+    bounce: float,
+    rub: Rub,
+    dt: float,
 ) -> float:
     """Fill in a contact whose normal and gap are given; return after what time the ball bounces, else -1."""
     px, py = body.x - robot.x - BALL_RADIUS * nx, body.y - robot.y - BALL_RADIUS * ny
@@ -63,7 +71,7 @@ def _meet(
 
 
 @compiled_lean
-def _arrives(body: Body, ball: Ball, robot: Body, front: Front, p: Parameters, dt: float) -> float:
+def _arrives(body: Body, ball: SimulatedBall, robot: Body, front: Front, p: Parameters, dt: float) -> float:
     """Note where the ball meets a robot in this step; return when it bounces off the roller, else -1."""
     for k in range(_CONTACTS):
         front.rubs[k].near = 0.0
@@ -74,7 +82,7 @@ def _arrives(body: Body, ball: Ball, robot: Body, front: Front, p: Parameters, d
         return -1.0
     gap = x - p.body.face - BALL_RADIUS
     time, width, there = 0.0, p.half_mouth, y
-    if gap > _GAP:
+    if gap > _CONTACT_GAP:
         # Not there yet: only if it comes in this step, and between the jaws.
         vx, vy = ball.vx - robot.vx + robot.omega * py, ball.vy - robot.vy - robot.omega * px
         apart = c * vx + s * vy
@@ -88,7 +96,7 @@ def _arrives(body: Body, ball: Ball, robot: Body, front: Front, p: Parameters, d
         share = p.dribbler.roller_restitution if driven else p.contact.front_restitution
         bounce = _meet(body, ball, robot, c, s, gap, share, rub, dt)
         rub.friction = p.dribbler.roller_friction
-        rub.down = p.roller if driven else _IDLE
+        rub.down = p.roller if driven else _IDLE_SURFACE
     if p.half_opening > 0.0:
         for k in range(_ROLLER + 1, _CONTACTS):
             side = 1.0 if k == _ROLLER + 1 else -1.0
@@ -97,7 +105,7 @@ def _arrives(body: Body, ball: Ball, robot: Body, front: Front, p: Parameters, d
             dy = y - side * (p.half_opening + p.rounding)
             away = hypot(dx, dy)
             gap = away - BALL_RADIUS - p.rounding
-            if gap > _GAP or gap < -BALL_RADIUS or dx < 0.0 or side * dy > 0.0:
+            if gap > _CONTACT_GAP or gap < -BALL_RADIUS or dx < 0.0 or side * dy > 0.0:
                 continue
             nx, ny = (c * dx - s * dy) / away, (s * dx + c * dy) / away
             rub = front.rubs[k]
@@ -108,16 +116,16 @@ def _arrives(body: Body, ball: Ball, robot: Body, front: Front, p: Parameters, d
 
 
 @compiled_lean
-def _press(ball: Ball, rub: Rub) -> None:
+def _press(ball: SimulatedBall, rub: Rub) -> None:
     """Improve the impulses of one contact and apply what changed."""
     nx, ny = rub.nx, rub.ny
     vx, vy = ball.vx - rub.vx, ball.vy - rub.vy
     press = max(rub.press + rub.part - (nx * vx + ny * vy), 0.0)
-    aside = rub.aside - (nx * vy - ny * vx - BALL_RADIUS * ball.twist) / (1.0 + _TURN)
+    aside = rub.aside - (nx * vy - ny * vx - BALL_RADIUS * ball.twist) / (1.0 + _SURFACE_SPEED_RATIO)
     lift = rub.lift
-    if rub.down != _IDLE:
+    if rub.down != _IDLE_SURFACE:
         # A ball that rolls away from the robot moves up where they touch.
-        lift -= (nx * ball.spin_x + ny * ball.spin_y + rub.down) / _TURN
+        lift -= (nx * ball.spin_x + ny * ball.spin_y + rub.down) / _SURFACE_SPEED_RATIO
     slip = hypot(aside, lift)
     if slip > rub.friction * press:
         aside *= rub.friction * press / slip
@@ -126,9 +134,9 @@ def _press(ball: Ball, rub: Rub) -> None:
     rub.press, rub.aside, rub.lift = press, aside, lift
     ball.vx += nx * push - ny * side
     ball.vy += ny * push + nx * side
-    ball.twist -= _TURN * side / BALL_RADIUS
-    ball.spin_x += _TURN * up * nx
-    ball.spin_y += _TURN * up * ny
+    ball.twist -= _SURFACE_SPEED_RATIO * side / BALL_RADIUS
+    ball.spin_x += _SURFACE_SPEED_RATIO * up * nx
+    ball.spin_y += _SURFACE_SPEED_RATIO * up * ny
 
 
 @compiled_lean
@@ -159,7 +167,7 @@ def roll(arena: Arena, dt: float) -> bool:
         ball.vx *= keep
         ball.vy *= keep
     ground_x = ground_y = 0.0
-    for _ in range(_SWEEPS):
+    for _ in range(_ROLLER_SWEEPS):
         weight = GRAVITY * dt
         for i in range(len(fronts)):
             for k in range(_CONTACTS):
@@ -167,16 +175,16 @@ def roll(arena: Arena, dt: float) -> bool:
                 if rub.near > 0.0:
                     _press(ball, rub)
                     weight -= rub.lift
-        jx = ground_x - (ball.vx - ball.spin_x) / (1.0 + _TURN)
-        jy = ground_y - (ball.vy - ball.spin_y) / (1.0 + _TURN)
+        jx = ground_x - (ball.vx - ball.spin_x) / (1.0 + _SURFACE_SPEED_RATIO)
+        jy = ground_y - (ball.vy - ball.spin_y) / (1.0 + _SURFACE_SPEED_RATIO)
         most, slip = ground * max(weight, 0.0), hypot(jx, jy)
         if slip > most:
             jx *= most / slip
             jy *= most / slip
         ball.vx += jx - ground_x
         ball.vy += jy - ground_y
-        ball.spin_x -= _TURN * (jx - ground_x)
-        ball.spin_y -= _TURN * (jy - ground_y)
+        ball.spin_x -= _SURFACE_SPEED_RATIO * (jx - ground_x)
+        ball.spin_y -= _SURFACE_SPEED_RATIO * (jy - ground_y)
         ground_x, ground_y = jx, jy
     if bounce > 0.0:
         # It moves on as it came until it bounces.

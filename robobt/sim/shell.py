@@ -13,7 +13,7 @@ from __future__ import annotations
 
 from math import cos, hypot, sin
 
-from robobt.sim.records import Ball, Body, Parameters, Wheels
+from robobt.sim.records import Body, Parameters, SimulatedBall, Wheels
 from robobt.world.compiled import compiled_lean
 from robobt.world.state import BALL_RADIUS
 
@@ -27,7 +27,7 @@ _BALL_INERTIA = 0.4
 """Moment of inertia of a solid ball over its mass and radius squared."""
 
 
-_FRONT, _CORE = 0, 5
+_FRONT_PLATE, _CORE_SPHERE = 0, 5
 """Parts of a robot: its front plate, the four wheels, and its core."""
 
 
@@ -49,7 +49,7 @@ def _out_of_box(x: float, y: float, low: float, high: float, half: float) -> tup
 
 
 @compiled_lean
-def meet(body: Body, ball: Ball, robot: Body, p: Parameters, w: Wheels, dt: float) -> None:
+def meet(body: Body, ball: SimulatedBall, robot: Body, p: Parameters, w: Wheels, dt: float) -> None:
     """Let the ball and one robot's plate, wheels and core push each other for one step.
 
     Args:
@@ -67,15 +67,15 @@ def meet(body: Body, ball: Ball, robot: Body, p: Parameters, w: Wheels, dt: floa
     c, s = cos(robot.heading), sin(robot.heading)
     x, y = c * px + s * py, c * py - s * px
     ahead = aside = 0.0
-    for part in range(_CORE + 1):
+    for part in range(_CORE_SPHERE + 1):
         friction = p.contact.hull_friction
         turn_c, turn_s = 1.0, 0.0
-        if part == _FRONT:
+        if part == _FRONT_PLATE:
             face = p.body.face
             ahead, aside, depth = _out_of_box(x, y, face - _DEEP, face, p.half_mouth)
             friction = p.contact.front_friction
-        elif part < _CORE:
-            wheel = w.each[part - _FRONT - 1]
+        elif part < _CORE_SPHERE:
+            wheel = w.each[part - _FRONT_PLATE - 1]
             turn_c, turn_s = wheel.cos, wheel.sin
             ahead, aside = turn_c * x + turn_s * y, turn_c * y - turn_s * x
             ahead, aside, depth = _out_of_box(ahead, aside, w.inner_edge, w.outer_edge, p.half_wheel)
@@ -95,7 +95,7 @@ def meet(body: Body, ball: Ball, robot: Body, p: Parameters, w: Wheels, dt: floa
 @compiled_lean
 def _push_apart(
     body: Body,
-    ball: Ball,
+    ball: SimulatedBall,
     robot: Body,
     nx: float,
     ny: float,
@@ -135,7 +135,7 @@ def _push_apart(
 
 
 @compiled_lean
-def drag(body: Body, ball: Ball, robot: Body, p: Parameters, w: Wheels, dt: float) -> None:
+def drag(body: Body, ball: SimulatedBall, robot: Body, p: Parameters, w: Wheels, dt: float) -> None:
     """Let a held ball weigh on its robot: its inertia, and its friction with the ground.
 
     The joint's axis lies ahead, above the ball: the ball rolls and swings sideways, the more freely the

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from math import cos, sin, sqrt
 
-from robobt.sim.records import Arena, Parameters, Records, Solver, Wall
+from robobt.sim.records import Arena, Parameters, Records, Solver, WallBox
 from robobt.world.compiled import compiled_lean
 from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS
 
@@ -37,7 +37,7 @@ def _meets_disc(px: float, py: float, dx: float, dy: float, reach: float) -> tup
 
 
 @compiled_lean
-def _meets_box(x: float, y: float, dx: float, dy: float, box: Wall, radius: float) -> float:
+def _meets_box(x: float, y: float, dx: float, dy: float, box: WallBox, radius: float) -> float:
     """Return when in (0, 1) a moving disc first meets a box, 1 if not: the box grown by a rounded rim."""
     first = 1.0
     t_in, t_out = _enters(x, dx, box.x0 - radius, box.x1 + radius, -1.0, 2.0)
@@ -123,7 +123,7 @@ def sweep(arena: Arena, solver: Solver, dt: float) -> tuple[float, float, float]
 
 
 @compiled_lean
-def in_a_wall(x: float, y: float, walls: Records[Wall]) -> bool:
+def in_a_wall(x: float, y: float, walls: Records[WallBox]) -> bool:
     """Return whether a ball reaches into one of the boxes."""
     for k in range(len(walls)):
         wall = walls[k]

@@ -19,16 +19,16 @@ from __future__ import annotations
 
 from math import copysign, cos, hypot, sin
 
-from robobt.sim.records import Body, Command, Drive, Records, Rim, Wheels
+from robobt.sim.records import Body, Command, Records, Rim, WheelDrive, Wheels
 from robobt.world.compiled import compiled_lean
 from robobt.world.records import Limits
 
-_WHEELS = 4
+_WHEEL_COUNT = 4
 
 _INNER, _OUTER = _EDGES = (0, 1)
 """The two edges of a rim."""
 
-_SWEEPS = 8
+_WHEEL_SWEEPS = 8
 """Passes over the contacts; the impulses of the last step are where they start."""
 
 
@@ -56,12 +56,14 @@ def _plan(robot: Body, command: Command, limits: Limits, w: Wheels, rims: Record
             vy = (c * robot.vy - s * robot.vx) * reach / now
     most = limits.turn_acceleration * 2.0 * w.frame
     turn = robot.omega + min(max(turn - robot.omega, -most), most)
-    for i in range(_WHEELS):
+    for i in range(_WHEEL_COUNT):
         rims[i].next = w.command_radius * turn - vx * w.each[i].sin + vy * w.each[i].cos
 
 
 @compiled_lean
-def drive_wheels(robot: Body, command: Command, limits: Limits, w: Wheels, drive: Drive, dt: float) -> bool:
+def drive_wheels(
+    robot: Body, command: Command, limits: Limits, w: Wheels, drive: WheelDrive, dt: float
+) -> bool:
     """Let the wheels turn for ``dt`` and change the robot's velocity accordingly.
 
     Args:
@@ -79,7 +81,7 @@ def drive_wheels(robot: Body, command: Command, limits: Limits, w: Wheels, drive
     begins = bool(drive.clock <= 1e-9)
     if begins:
         drive.clock += w.frame
-        for i in range(_WHEELS):
+        for i in range(_WHEEL_COUNT):
             rims[i].target = rims[i].next
         _plan(robot, command, limits, w, rims)
     drive.clock -= dt
@@ -92,7 +94,7 @@ def drive_wheels(robot: Body, command: Command, limits: Limits, w: Wheels, drive
     start_ahead, start_aside = ahead, aside
     ahead, aside, turn = _push(ahead, aside, turn, w, drive, dt)
     motor, rim = w.motor * dt, 1.0 / w.rim_mass
-    for i in range(_WHEELS):
+    for i in range(_WHEEL_COUNT):
         wheel = rims[i]
         force = wheel.along[_INNER] + wheel.along[_OUTER]
         needed = (wheel.target - wheel.speed) * w.rim_mass + force
@@ -112,7 +114,7 @@ def drive_wheels(robot: Body, command: Command, limits: Limits, w: Wheels, drive
 
 @compiled_lean
 def _push(
-    ahead: float, aside: float, turn: float, w: Wheels, drive: Drive, dt: float
+    ahead: float, aside: float, turn: float, w: Wheels, drive: WheelDrive, dt: float
 ) -> tuple[float, float, float]:
     """Return a robot's velocity, in its own frame, after its wheels have pushed it for ``dt``."""
     rims, centre = drive.rims, w.centre
@@ -120,11 +122,11 @@ def _push(
     motor = w.motor * dt
     # A spinning wheel resists being turned about the vertical, and leans on the ground instead.
     lean_ahead, lean_aside = drive.lean_ahead, drive.lean_aside
-    for i in range(_WHEELS):
+    for i in range(_WHEEL_COUNT):
         lean_ahead -= w.gyro * turn * rims[i].speed * w.each[i].cos
         lean_aside -= w.gyro * turn * rims[i].speed * w.each[i].sin
     # Impulses of the last step, within what the loads allow now.
-    for i in range(_WHEELS):
+    for i in range(_WHEEL_COUNT):
         it, wheel = w.each[i], rims[i]
         load = max(it.load_rest - it.load_ahead * lean_ahead - it.load_aside * lean_aside, 0.0) * dt
         grip, drag = 0.5 * w.tangent_friction * load, w.axial_friction * load
@@ -137,8 +139,8 @@ def _push(
         aside += (push * it.cos + across * it.sin) * body
         turn += (wheel.along[_INNER] * w.inner_edge + wheel.along[_OUTER] * w.outer_edge) * spin
         turn -= centre * (push * it.cos + across * it.sin) * spin
-    for _ in range(_SWEEPS):
-        for i in range(_WHEELS):
+    for _ in range(_WHEEL_SWEEPS):
+        for i in range(_WHEEL_COUNT):
             it, wheel = w.each[i], rims[i]
             load = max(it.load_rest - it.load_ahead * lean_ahead - it.load_aside * lean_aside, 0.0) * dt
             grip, drag = 0.5 * w.tangent_friction * load, w.axial_friction * load

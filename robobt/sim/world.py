@@ -124,7 +124,7 @@ class SimWorld(World):
         rows = self._commands[0]
         loss = self.settings.realism.command_loss
         lost = self._rng.random(len(self._ids)) < loss if loss > 0.0 else None
-        sent: list[tuple[float, ...]] = [_NOTHING] * len(self._ids)
+        sent: list[tuple[float, ...]] = [_ZERO_COMMAND] * len(self._ids)
         for robot, command in commands.items():
             i = self._index[robot]
             if not command.finite():
@@ -242,7 +242,7 @@ class SimWorld(World):
         )
 
 
-_NOTHING = (0.0,) * size(COMMAND)
+_ZERO_COMMAND = (0.0,) * size(COMMAND)
 
 
 def command_row(command: RobotCommand) -> tuple[float, ...]:

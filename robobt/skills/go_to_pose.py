@@ -16,8 +16,8 @@ from robobt.tree import Status
 from robobt.world.command import RobotCommand
 from robobt.world.geometry import Point, direction, wrap_angle
 
-_SLACK = 0.9
-_STANDING = 0.1
+_HEADING_SHARE = 0.9
+_ARRIVED_SPEED = 0.1
 """Speed below which a robot counts as arrived [m/s]."""
 
 
@@ -113,12 +113,12 @@ class GoToPose(DrivingSkill):
         x, y = allowed_target(frame, me, target, goalkeeper=self.goalkeeper)
         gap = hypot(x - me.x, y - me.y)
         there = gap <= self.tolerance and abs(wrap_angle(heading - me.heading)) <= self.heading_tolerance
-        if there and me.speed < _STANDING:
+        if there and me.speed < _ARRIVED_SPEED:
             return self.succeed("there")
         return self.run("driving")
 
     def _heading(self) -> float:
         if self.face_ball:
             wanted = direction(self.me.position, self.ball.position)
-            return roughly(self.me.heading, wanted, _SLACK * self.heading_tolerance)
+            return roughly(self.me.heading, wanted, _HEADING_SHARE * self.heading_tolerance)
         return self._kept_heading if self.heading is None else self.heading

@@ -17,7 +17,7 @@ from robobt.world.state import BallState, Frame, RobotState
 NEAR = 0.5
 """Distance from which a robot at the policy's speed can still brake and turn to its final heading [m]."""
 
-_FAR = 0.7
+_HANDBACK_DISTANCE = 0.7
 """Hysteresis: the planner keeps control until the target is this far away again [m]."""
 
 
@@ -73,7 +73,7 @@ class LearnedWay:
             goalkeeper=goalkeeper,
             ball_gap=ball_gap,
         )
-        self._near = distance(me.position, place) < (_FAR if self._near else NEAR)
+        self._near = distance(me.position, place) < (_HANDBACK_DISTANCE if self._near else NEAR)
         if self._near or not frame.game.in_play:
             self._control.restart()
             return None

@@ -44,7 +44,7 @@ touch, kicking a held ball loose, the learned attack, drawing the goalkeeper, br
 
 
 @dataclass(slots=True)
-class Plan:
+class TeamPlan:
     """The agreement of one team, updated every frame from the last one.
 
     Attributes:

@@ -6,7 +6,7 @@ from robobt.skills.base import Skill, skill
 from robobt.tree import Status
 from robobt.world.command import RobotCommand
 
-_STANDING = 0.01
+_STOPPED_SPEED = 0.01
 
 
 @skill
@@ -23,5 +23,5 @@ class Stop(Skill):
         """Command zero velocity."""
         self.store.command = RobotCommand(dribbler=self.dribbler)
         me = self.me
-        still = me.speed < _STANDING and abs(me.omega) < _STANDING
+        still = me.speed < _STOPPED_SPEED and abs(me.omega) < _STOPPED_SPEED
         return self.succeed("standing") if still else self.run("braking")

@@ -8,7 +8,7 @@ from typing import Any, TypeVar
 from robobt.skills.aims import GoalLine as GoalLine
 from robobt.skills.aims import Pass as Pass
 from robobt.skills.aims import Shot as Shot
-from robobt.skills.plan import Plan
+from robobt.skills.plan import TeamPlan
 from robobt.world.command import RobotCommand
 from robobt.world.geometry import Point
 from robobt.world.sketch import Sketch
@@ -49,7 +49,7 @@ class TeamStore:
     kicker: int | None = None
     restart_pending: bool = False
     followed: Frame | None = None
-    plan: Plan = field(default_factory=Plan)
+    plan: TeamPlan = field(default_factory=TeamPlan)
     kept: dict[type, Any] = field(default_factory=dict)
 
     def shared(self, kind: type[T]) -> T:

@@ -27,7 +27,7 @@ from robobt.plays.files import contents_of, is_play_file, problem_with_play, ren
 from robobt.plays.private_files import join_play, split_play
 from robobt.world.game import Team
 
-_MARK = "entrant"
+_ENTRANT_FIELD = "entrant"
 """The field that distinguishes an entrant's file from a play's file."""
 
 
@@ -35,7 +35,7 @@ class EntrantError(ConfigError):
     """An entrant cannot take part; the message is one line that names its file or text."""
 
 
-class Part(Settings):
+class RobotPlay(Settings):
     """The play of one robot."""
 
     play: str = Field(
@@ -50,13 +50,13 @@ class EntrantFile(Settings):
     """The YAML file of an entrant."""
 
     entrant: str = Field(min_length=1, max_length=80, description="what it is called")
-    players: tuple[Part, ...] = Field(
+    players: tuple[RobotPlay, ...] = Field(
         (),
         max_length=11,
         strict=False,
         description="the field players in the scenario's order; the last one is also all that follow",
     )
-    goalkeeper: Part | None = Field(None, description="the goalkeeper; by default the scenario's")
+    goalkeeper: RobotPlay | None = Field(None, description="the goalkeeper; by default the scenario's")
     program: Program | None = Field(
         None, description="instead of players: a program that commands the robots over the league's protocols"
     )
@@ -97,8 +97,8 @@ class Entrant:
 
     name: str
     source: str
-    players: tuple[Part, ...]
-    goalkeeper: Part | None = None
+    players: tuple[RobotPlay, ...]
+    goalkeeper: RobotPlay | None = None
     program: Program | None = None
 
     def error(self, problem: str, field: str = "") -> EntrantError:
@@ -106,7 +106,7 @@ class Entrant:
         return EntrantError(self.source, problem, field)
 
     @property
-    def parts(self) -> list[Part]:
+    def parts(self) -> list[RobotPlay]:
         """Return what each of its robots plays, the goalkeeper last."""
         return [*self.players, *([self.goalkeeper] if self.goalkeeper else [])]
 
@@ -152,7 +152,7 @@ def read_entrant(text: str, params: Mapping[str, object] | None = None, name: st
     if split_play(text)[0] or text.endswith(".py"):
         if problem := problem_with_play(text):
             raise EntrantError(text, problem)
-        return Entrant(name or text, text, (Part(play=text, params=given),))
+        return Entrant(name or text, text, (RobotPlay(play=text, params=given),))
     scenario, colon, side = text.rpartition(":")
     if colon and side in list(Team):
         if given:
@@ -160,7 +160,7 @@ def read_entrant(text: str, params: Mapping[str, object] | None = None, name: st
         return _from_side(name or text, text, load_scenario(scenario), Team(side))
     if text.endswith((".yaml", ".yml")):
         data = read_yaml(Path(text), EntrantError)
-        if _MARK in data:
+        if _ENTRANT_FIELD in data:
             if given:
                 raise EntrantError(text, "an entrant's file has its parameters inside")
             return _from_file(Path(text), data)
@@ -168,7 +168,7 @@ def read_entrant(text: str, params: Mapping[str, object] | None = None, name: st
             raise EntrantError(text, f"is a scenario; name its side, as in {text}:blue")
     elif not is_play_file(text) and text not in PLAYS:
         raise EntrantError(text, _unknown(text))
-    return Entrant(name or text, text, (Part(play=text, params=given),))
+    return Entrant(name or text, text, (RobotPlay(play=text, params=given),))
 
 
 def meeting(scenario: Scenario, blue: Entrant, yellow: Entrant) -> Scenario:
@@ -209,7 +209,7 @@ def _from_file(path: Path, data: dict[str, object]) -> Entrant:
             raise EntrantError(str(path), f"there is no file {path.parent / name}", f"imports.{number}")
         imports.append(str(path.parent / name))
 
-    def beside(part: Part, field: str) -> Part:
+    def beside(part: RobotPlay, field: str) -> RobotPlay:
         play = rename_play(part.play, lambda file: str(path.parent / file))
         if not split_play(play)[0]:
             play = join_play(imports, play)
@@ -221,7 +221,7 @@ def _from_file(path: Path, data: dict[str, object]) -> Entrant:
     players = tuple([beside(part, f"players.{number}") for number, part in enumerate(read.players)])
     goalkeeper = None if read.goalkeeper is None else beside(read.goalkeeper, "goalkeeper")
     if read.program is not None:
-        still = Part(play="stand_still")
+        still = RobotPlay(play="stand_still")
         return Entrant(read.entrant, str(path), (still,), still, read.program)
     return Entrant(read.entrant, str(path), players, goalkeeper)
 
@@ -264,8 +264,8 @@ def _model(word: str) -> Path | None:
     return path if path.is_file() and path.resolve().parent != models_folder().resolve() else None
 
 
-def _part(robot: RobotSetup) -> Part:
-    return Part(play=robot.play, params=robot.params)
+def _part(robot: RobotSetup) -> RobotPlay:
+    return RobotPlay(play=robot.play, params=robot.params)
 
 
 def _unknown(name: str) -> str:

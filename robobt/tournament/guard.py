@@ -18,18 +18,18 @@ from robobt.match.players import Player
 from robobt.tree import Status
 from robobt.world.game import Team
 
-SILENCE = 300.0
+STANDSTILL_TIME = 300.0
 """Longest time without progress of a match; compiling takes a minute or two on a busy machine [s]."""
 
-_LETTERS = {Team.BLUE: ord("b"), Team.YELLOW: ord("y")}
-_NOBODY = ord("-")
+_TEAM_LETTERS = {Team.BLUE: ord("b"), Team.YELLOW: ord("y")}
+_NO_TREE = ord("-")
 
 _TICKS = 1000
 """Number of ticks between resets of the watchdog; a reset costs as much as ticking a tree."""
 
 
 @contextmanager
-def guarded(match: MatchLoop, note: Path, silence: float = SILENCE) -> Iterator[None]:
+def guarded(match: MatchLoop, note: Path, silence: float = STANDSTILL_TIME) -> Iterator[None]:
     """Note in a file whose tree is being ticked, and end this process if there is no more progress.
 
     Args:
@@ -37,7 +37,7 @@ def guarded(match: MatchLoop, note: Path, silence: float = SILENCE) -> Iterator[
         note: the file; removed when the block ends, unless by what ends the process.
         silence: longest time without progress [s].
     """
-    note.write_bytes(bytes([_NOBODY]))
+    note.write_bytes(bytes([_NO_TREE]))
     try:
         with (
             note.open("r+b") as file,
@@ -73,7 +73,7 @@ def noted(note: Path) -> Team | None:
     except OSError:
         return None
     note.unlink(missing_ok=True)
-    return next((team for team, sign in _LETTERS.items() if letter == bytes([sign])), None)
+    return next((team for team, sign in _TEAM_LETTERS.items() if letter == bytes([sign])), None)
 
 
 class _Counter:
@@ -90,16 +90,16 @@ class _Counter:
 
 
 def _note(player: Player, shared: mmap.mmap, counter: _Counter) -> None:
-    tick, letter = player.runner.tick, _LETTERS[player.robot.team]
+    tick, letter = player.runner.tick, _TEAM_LETTERS[player.robot.team]
 
     def noting() -> Status:
         shared[0] = letter
         try:
             status = tick()
         except Exception:
-            shared[0] = _NOBODY
+            shared[0] = _NO_TREE
             raise
-        shared[0] = _NOBODY
+        shared[0] = _NO_TREE
         counter.count()
         return status
 

@@ -13,8 +13,8 @@ from robobt.match.results.file import scenario_digest
 from robobt.match.scenario.scenario import Scenario
 from robobt.tournament.entrants import Entrant, meeting
 from robobt.tournament.fixtures import Fixture, fixtures, pairings
-from robobt.tournament.guard import SILENCE
-from robobt.tournament.store import Store
+from robobt.tournament.guard import STANDSTILL_TIME
+from robobt.tournament.store import MatchStore
 from robobt.worlds import scenario_settings, sim_world
 
 
@@ -49,7 +49,7 @@ class Plan:
     seed: int
     against: str | None = None
     referee: RefereeFactory = own_referee
-    silence: float = SILENCE
+    silence: float = STANDSTILL_TIME
     world: WorldFactory = sim_world
     speed: float = 1.0
     first_round: int = 0
@@ -90,7 +90,7 @@ class Plan:
         """Return all matches, round by round."""
         return list(fixtures(self.pairings, self.rounds, self.first_round))
 
-    def open_store(self, path: Path, **besides: str) -> Store:
+    def open_store(self, path: Path, **besides: str) -> MatchStore:
         """Open its store, or make it, and return it with the entrants entered.
 
         Args:
@@ -108,7 +108,7 @@ class Plan:
             "robobt": __version__,
             **besides,
         }
-        store = Store(path, played)
+        store = MatchStore(path, played)
         try:
             store.enter(self.entrants)
         except BaseException:

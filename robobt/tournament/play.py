@@ -22,13 +22,13 @@ from robobt.tournament.job import Failure, Job, set_up
 from robobt.tournament.plan import Plan, TournamentError
 from robobt.tournament.played import PlayedMatch
 from robobt.tournament.recordings import Recordings
-from robobt.tournament.store import Store
+from robobt.tournament.store import MatchStore
 
 Enough = Callable[[Collection[PlayedMatch], Collection[Fixture]], bool]
 
 Needless = Callable[[Fixture], bool]
 
-_POLL = 1.0
+_CLAIM_POLL = 1.0
 """Interval for checking whether another program has finished its claimed matches [s]."""
 
 _TELLS = 15
@@ -52,7 +52,7 @@ class Played:
 
 def play_tournament(
     plan: Plan,
-    store: Store,
+    store: MatchStore,
     workers: int = 0,
     *,
     recordings: Recordings | None = None,
@@ -124,7 +124,7 @@ def play_tournament(
                     looks = looks + 1 if left == missing else 0
                     if looks == _TELLS and on_wait is not None:
                         on_wait(len(left))
-                    time.sleep(_POLL)
+                    time.sleep(_CLAIM_POLL)
         except KeyboardInterrupt:
             interrupted = True
         finally:
@@ -144,7 +144,7 @@ class _Driver:
     def __init__(
         self,
         plan: Plan,
-        store: Store,
+        store: MatchStore,
         recordings: Recordings | None,
         on_match: Callable[[PlayedMatch], object] | None,
         enough: Enough | None,

@@ -155,5 +155,5 @@ PLAIN = tuple(part.name for part in fields(PlayedMatch) if part.name != "sides")
 SIDE = tuple(part.name for part in fields(SideResult) if part.name != "goals")
 """Columns of a side, behind its team's name; its goals are the match's."""
 
-COLUMNS = (*PLAIN, *[f"{team.value}_{name}" for team in Team for name in SIDE])
+MATCH_COLUMNS = (*PLAIN, *[f"{team.value}_{name}" for team in Team for name in SIDE])
 """The columns of the table."""

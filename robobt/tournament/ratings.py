@@ -18,7 +18,7 @@ ELO = 400.0 / log(10.0)
 _PRIOR = 1.0
 """Prior draws of every entrant against an average one, so that winning all matches gives a finite rating."""
 
-_STEPS = 100
+_NEWTON_STEPS = 100
 """Newton's steps at most; a fit takes about ten."""
 
 
@@ -101,7 +101,7 @@ def _fit(
         won: points of each (n,).
     """
     strength = np.zeros(len(won))
-    for _ in range(_STEPS):
+    for _ in range(_NEWTON_STEPS):
         chance = 1.0 / (1.0 + np.exp(strength[None, :] - strength[:, None]))
         stranger = 1.0 / (1.0 + np.exp(-strength))
         slope = won - (met * chance).sum(1) + _PRIOR * (0.5 - stranger)

@@ -15,7 +15,7 @@ from robobt.tournament.played import PlayedMatch
 from robobt.tournament.recordings import Recordings
 from robobt.tournament.standings import Standing, Standings
 
-_STYLE = """
+_REPORT_STYLE = """
 :root { color-scheme: light dark; font: 15px/1.5 system-ui, sans-serif }
 body { max-width: 70rem; margin: 2rem auto; padding: 0 1rem }
 table { border-collapse: collapse; margin: 0.5rem 0 1.5rem }
@@ -26,10 +26,10 @@ svg { font: 13px system-ui, sans-serif; fill: currentColor; stroke: currentColor
 svg text { stroke: none }
 """
 
-_WIDTH, _LEFT, _ROW = 760.0, 260.0, 28.0
+_PLOT_WIDTH, _NAMES_WIDTH, _PLOT_ROW_HEIGHT = 760.0, 260.0, 28.0
 """Of the rating plot: its width, where the names end, and the height of a row [pixels]."""
 
-_FIGURES = {
+_FIGURE_COLUMNS = {
     "goals": "goals",
     "expected_goals": "expected goals",
     "shots_on_goal": "shots on goal",
@@ -89,10 +89,12 @@ def report(
         "<h2>Encounters</h2>",
         _table(_ENCOUNTER_HEAD, _encounter_rows(found)),
         "<h2>A match in the mean</h2>",
-        _table(["", *_FIGURES.values()], [_figure_row(name, one) for name, one in found.standings.items()]),
+        _table(
+            ["", *_FIGURE_COLUMNS.values()], [_figure_row(name, one) for name, one in found.standings.items()]
+        ),
         _recorded(matches, links),
     ]
-    head = f'<meta charset="utf-8"><title>{title}</title><style>{_STYLE}</style>'
+    head = f'<meta charset="utf-8"><title>{title}</title><style>{_REPORT_STYLE}</style>'
     return f"<!doctype html><html lang=en><head>{head}</head><body>{''.join(parts)}</body></html>\n"
 
 
@@ -100,18 +102,18 @@ def rating_plot(standings: Mapping[str, Standing]) -> str:
     """Return the ratings with their intervals as a picture (SVG)."""
     low = min(one.rating.low for one in standings.values())
     high = max(one.rating.high for one in standings.values())
-    scale = (_WIDTH - _LEFT - 20.0) / max(high - low, 1.0)
+    scale = (_PLOT_WIDTH - _NAMES_WIDTH - 20.0) / max(high - low, 1.0)
 
     def at(elo: float) -> float:
-        return _LEFT + 10.0 + (elo - low) * scale
+        return _NAMES_WIDTH + 10.0 + (elo - low) * scale
 
-    bottom = _ROW * len(standings)
+    bottom = _PLOT_ROW_HEIGHT * len(standings)
     drawn = [f'<line x1="{at(0):.1f}" x2="{at(0):.1f}" y1="0" y2="{bottom:.0f}" stroke-dasharray="3" />']
     for number, (name, one) in enumerate(standings.items()):
-        y, rating = _ROW * (number + 0.5), one.rating
+        y, rating = _PLOT_ROW_HEIGHT * (number + 0.5), one.rating
         shown = name if len(name) <= 34 else f"{name[:33]}…"
         drawn.append(
-            f'<text x="{_LEFT:.0f}" y="{y + 4:.0f}" text-anchor="end">{escape(shown)}'
+            f'<text x="{_NAMES_WIDTH:.0f}" y="{y + 4:.0f}" text-anchor="end">{escape(shown)}'
             f"<title>{escape(name)}</title></text>"
             f'<line x1="{at(rating.low):.1f}" x2="{at(rating.high):.1f}" y1="{y:.0f}" y2="{y:.0f}" />'
             f'<circle cx="{at(rating.elo):.1f}" cy="{y:.0f}" r="4"><title>{_elo(one)}</title></circle>'
@@ -120,7 +122,7 @@ def rating_plot(standings: Mapping[str, Standing]) -> str:
         drawn.append(
             f'<text x="{at(elo):.1f}" y="{bottom + 16:.0f}" text-anchor="{anchor}">{elo:+.0f}</text>'
         )
-    size = f'width="{_WIDTH:.0f}" height="{bottom + 24:.0f}"'
+    size = f'width="{_PLOT_WIDTH:.0f}" height="{bottom + 24:.0f}"'
     return f'<svg {size} role="img" aria-label="Ratings with 95 % intervals">{"".join(drawn)}</svg>'
 
 
@@ -189,7 +191,7 @@ def _encounter_rows(found: Standings) -> Iterable[list[str]]:
 
 
 def _figure_row(name: str, one: Standing) -> list[str]:
-    return [escape(name), *[f"{one.figures[figure]:.2f}" for figure in _FIGURES]]
+    return [escape(name), *[f"{one.figures[figure]:.2f}" for figure in _FIGURE_COLUMNS]]
 
 
 def _recorded(matches: Iterable[PlayedMatch], links: Mapping[object, str]) -> str:

@@ -27,7 +27,7 @@ from robobt.tournament.standings import rounds_of
 SCORES = np.array([0.0, 0.25, 0.5, 0.75, 1.0])
 """Possible scores of a pair of matches."""
 
-_UNSEEN = 1e-3
+_PRIOR_PAIRS = 1e-3
 """Pairs that an outcome counts for before any was seen, so that none is thought impossible."""
 
 _BISECTIONS = 60
@@ -81,7 +81,7 @@ class SequentialTest:
         """
         seen = np.asarray(counts, dtype=np.float64)
         total = seen.sum(-1)
-        shares = (seen + _UNSEEN) / (seen + _UNSEEN).sum(-1, keepdims=True)
+        shares = (seen + _PRIOR_PAIRS) / (seen + _PRIOR_PAIRS).sum(-1, keepdims=True)
         likely = [_tilted(shares, expected_score(elo)) for elo in (self.elo0, self.elo1)]
         found: NDArray[np.float64] = total * (shares * np.log(likely[1] / likely[0])).sum(-1)
         return found

@@ -13,7 +13,7 @@ from robobt.statistics import Interval, wilson_interval
 from robobt.tournament.ratings import ELO, expected_score
 from robobt.tournament.sequential import SCORES, SequentialTest
 
-_NODES = 41
+_QUADRATURE_NODES = 41
 """Points at which the effect of the starts is averaged."""
 
 
@@ -55,7 +55,7 @@ def round_chances(elo: float, draws: float, spread: float) -> NDArray[np.float64
     Source: Davidson, "On extending the Bradley-Terry model to accommodate ties in paired
     comparison experiments", 1970.
     """
-    nodes, weights = np.polynomial.hermite_e.hermegauss(_NODES)
+    nodes, weights = np.polynomial.hermite_e.hermegauss(_QUADRATURE_NODES)
     weights = weights / weights.sum()
     tie = 2.0 * draws / (1.0 - draws)
 

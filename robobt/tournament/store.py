@@ -21,14 +21,14 @@ from robobt.config.closing import Closing
 from robobt.config.errors import RobobtError, one_line, short_repr
 from robobt.tournament.entrants import Entrant
 from robobt.tournament.fixtures import Fixture
-from robobt.tournament.played import COLUMNS, PLAIN, PlayedMatch, SideResult
+from robobt.tournament.played import MATCH_COLUMNS, PLAIN, PlayedMatch, SideResult
 
-FORMAT = "robobt-tournament 1"
+TOURNAMENT_FORMAT = "robobt-tournament 1"
 
-_PATIENCE = 60.0
+_LOCK_TIMEOUT = 60.0
 """Longest wait for another writer [s]."""
 
-_TRIES = 600
+_LOCK_TRIES = 600
 """How often it is looked whether another program has let go in that time."""
 
 
@@ -39,14 +39,19 @@ class StoreError(RobobtError, ValueError):
         super().__init__(": ".join([one_line(part) for part in (str(path), field, problem) if part]))
 
 
-_KINDS = {"int": "INTEGER NOT NULL", "float": "REAL NOT NULL", "str": "TEXT NOT NULL", "str | None": "TEXT"}
+_SQL_TYPES = {
+    "int": "INTEGER NOT NULL",
+    "float": "REAL NOT NULL",
+    "str": "TEXT NOT NULL",
+    "str | None": "TEXT",
+}
 
 
 def _kinds() -> Iterator[str]:
     kinds = {part.name: str(part.type) for part in (*fields(PlayedMatch), *fields(SideResult))}
-    for name in COLUMNS:
+    for name in MATCH_COLUMNS:
         plain = name if name in PLAIN else name.partition("_")[2]
-        yield f"{name} {_KINDS[kinds[plain]]}"
+        yield f"{name} {_SQL_TYPES[kinds[plain]]}"
 
 
 _SCHEMA = f"""
@@ -61,7 +66,7 @@ CREATE TABLE matches ({", ".join(_kinds())}, PRIMARY KEY (blue, yellow, round));
 )
 
 
-class Store(Closing):
+class MatchStore(Closing):
     """An open store. A context manager.
 
     Args:
@@ -89,7 +94,9 @@ class Store(Closing):
             os.access(path, os.W_OK) for path in (self.path, self.path.parent)
         )
         with self._naming():
-            self._connection = sqlite3.connect(self._uri(), timeout=_PATIENCE, isolation_level=None, uri=True)
+            self._connection = sqlite3.connect(
+                self._uri(), timeout=_LOCK_TIMEOUT, isolation_level=None, uri=True
+            )
             self._connection.row_factory = sqlite3.Row
         try:
             with self._naming():
@@ -136,7 +143,7 @@ class Store(Closing):
         played = [PlayedMatch.of_row(dict(row)) for row in rows]
         return [match for match in played if names is None or {match.blue, match.yellow} <= {*names}]
 
-    def merge(self, other: Store) -> int:
+    def merge(self, other: MatchStore) -> int:
         """Copy the matches of another store for this tournament; return how many matches were new.
 
         Raises:
@@ -163,8 +170,8 @@ class Store(Closing):
 
     def _add(self, matches: Sequence[PlayedMatch]) -> int:
         before = self._connection.total_changes
-        names = ", ".join(COLUMNS)
-        places = ", ".join([f":{name}" for name in COLUMNS])
+        names = ", ".join(MATCH_COLUMNS)
+        places = ", ".join([f":{name}" for name in MATCH_COLUMNS])
         # Not OR IGNORE, which would also pass over a row that is not whole.
         self._connection.executemany(
             f"INSERT INTO matches ({names}) VALUES ({places}) ON CONFLICT (blue, yellow, round) DO NOTHING",
@@ -186,7 +193,7 @@ class Store(Closing):
     def _open(self, played: Mapping[str, object] | None) -> None:
         # Nothing is lost when this process is killed; a machine that loses power loses the last rows at most.
         # Waiting for the disk after each row would cost more than the rest of the driver.
-        for tries in range(_TRIES):
+        for tries in range(_LOCK_TRIES):
             try:
                 # Looked at before: another program's database stays as it is, down to its journal.
                 self._is_new(played)
@@ -195,24 +202,26 @@ class Store(Closing):
                 break
             except sqlite3.OperationalError:
                 # Another program is making the same change, for which SQLite does not wait by itself.
-                if self._read_only or tries == _TRIES - 1:
+                if self._read_only or tries == _LOCK_TRIES - 1:
                     raise
-                time.sleep(_PATIENCE / _TRIES)
+                time.sleep(_LOCK_TIMEOUT / _LOCK_TRIES)
         self._connection.execute("PRAGMA synchronous = NORMAL")
         with self._naming() if self._read_only else self._writing():
             if played is not None and self._is_new(played):
                 for statement in filter(str.strip, _SCHEMA.split(";\n")):
                     self._connection.execute(f"{statement};")
-                says = {"format": FORMAT, **{name: str(value) for name, value in played.items()}}
+                says = {"format": TOURNAMENT_FORMAT, **{name: str(value) for name, value in played.items()}}
                 self._connection.executemany("INSERT INTO tournament VALUES (?, ?)", says.items())
             held = self._connection.execute("SELECT field, value FROM tournament ORDER BY rowid")
             self.played = {row[0]: row[1] for row in held}
             columns = {row["name"] for row in self._connection.execute("PRAGMA table_info(matches)")}
-        if self.played.get("format") != FORMAT:
-            raise StoreError(self.path, f"is {self.played.get('format')!r}, not {FORMAT!r}", "format")
+        if self.played.get("format") != TOURNAMENT_FORMAT:
+            raise StoreError(
+                self.path, f"is {self.played.get('format')!r}, not {TOURNAMENT_FORMAT!r}", "format"
+            )
         if played is not None:
             self._check({name: str(value) for name, value in played.items()}, None)
-        if other := columns ^ {*COLUMNS}:
+        if other := columns ^ {*MATCH_COLUMNS}:
             missing, unknown = sorted(other - columns), sorted(other & columns)
             what = f"lacks {', '.join(missing)}" if missing else f"has {', '.join(unknown)} besides"
             raise StoreError(self.path, f"{what}; read it with the version of robobt that made it", "matches")

@@ -23,7 +23,7 @@ from robobt.tree.signatures import signature_of
 
 BuilderT = TypeVar("BuilderT", bound=Callable[..., object])
 
-_NOTHING: Mapping[str, str] = {}
+_NO_FORMER_PARAMETERS: Mapping[str, str] = {}
 
 
 class ParameterError(RobobtError, ValueError):
@@ -187,7 +187,7 @@ def formerly(**written: str) -> Callable[[BuilderT], BuilderT]:
 
 def former_names(builder: object) -> Mapping[str, str]:
     """Return what is to be written for parameters that a play or node had in earlier versions."""
-    found: Mapping[str, str] = getattr(builder, "former_parameters", _NOTHING)
+    found: Mapping[str, str] = getattr(builder, "former_parameters", _NO_FORMER_PARAMETERS)
     return found
 
 
@@ -195,7 +195,7 @@ def check_names(
     what: str,
     known: Mapping[str, Parameter],
     given: Mapping[str, object],
-    former: Mapping[str, str] = _NOTHING,
+    former: Mapping[str, str] = _NO_FORMER_PARAMETERS,
 ) -> None:
     """Check that every given name is known and every parameter without a default is given.
 

@@ -23,7 +23,7 @@ from robobt.tree.engine import Marks, ticked_children
 from robobt.tree.runner import TreeRunner, status_letter
 from robobt.tree.walk import name_of
 
-_SILENT = (composites.Selector, composites.Sequence, composites.Parallel)
+_NODES_WITHOUT_FEEDBACK = (composites.Selector, composites.Sequence, composites.Parallel)
 """Classes whose own nodes give no feedback."""
 
 
@@ -140,7 +140,9 @@ class TreeWatch:
         self.reach = [ticked_children(node) for node in nodes]
         doubtful = [node for i, node in enumerate(nodes[1:], 1) if self.reach[self.parents[i]] == "some"]
         self.marks = runner.mark(doubtful, news)
-        self._speakers = [place for place, node in enumerate(nodes) if type(node) not in _SILENT]
+        self._speakers = [
+            place for place, node in enumerate(nodes) if type(node) not in _NODES_WITHOUT_FEEDBACK
+        ]
         self._statuses = _reader(range(len(nodes)), "status", nodes)
         self._feedback = _reader(self._speakers, "feedback_message", nodes)
         # As of the last look.

@@ -45,7 +45,7 @@ class TreeRunner:
         ticks: number of ticks.
 
     Raises:
-        TreeError: the nodes are no tree, or one that is more than :data:`MAX_DEPTH` nodes deep.
+        TreeError: the nodes are no tree, or one that is more than :data:`MAX_TREE_DEPTH` nodes deep.
     """
 
     def __init__(self, root: Behaviour, store: object, on_error: Literal["stop", "raise"] = "stop") -> None:
@@ -252,7 +252,7 @@ _ENGINES = ("robobt.tree.", "py_trees.")
 def status_letter(status: object) -> str:
     """Return S, F or R, or - for INVALID and for what is no status, as a skill may have set it on a node."""
     # By value: hashing an enum's member is a Python call, hashing its string is not.
-    return _LETTERS.get(getattr(status, "_value_", ""), "-")
+    return _STATUS_LETTERS.get(getattr(status, "_value_", ""), "-")
 
 
-_LETTERS = {"SUCCESS": "S", "FAILURE": "F", "RUNNING": "R"}
+_STATUS_LETTERS = {"SUCCESS": "S", "FAILURE": "F", "RUNNING": "R"}

@@ -12,7 +12,7 @@ from py_trees.common import Status
 
 from robobt.tree.drawing import COLOURS, NodeDescription, describe, printable
 
-_ROW, _BOX, _GAP, _EDGE = 44.0, 34.0, 34.0, 12.0
+_ROW_SPACING, _BOX_HEIGHT, _BOX_GAP, _PICTURE_EDGE = 44.0, 34.0, 34.0, 12.0
 _NARROW, _WIDE = frozenset("fijlrtI.,:;|'!()[]{} "), frozenset("mwMW→⇉▤◇")
 
 
@@ -40,10 +40,11 @@ def tree_svg(root: Behaviour, statuses: bool = False) -> str:
     layers = [0.0] * (1 + max(box.layer for box in boxes))
     for box in boxes:
         layers[box.layer] = max(layers[box.layer], box.width)
-    left = [_EDGE]
+    left = [_PICTURE_EDGE]
     for width in layers:
-        left.append(left[-1] + width + _GAP)
-    total, height = left[-1] - _GAP + _EDGE, rows * _ROW + 2 * _EDGE - (_ROW - _BOX)
+        left.append(left[-1] + width + _BOX_GAP)
+    total = left[-1] - _BOX_GAP + _PICTURE_EDGE
+    height = rows * _ROW_SPACING + 2 * _PICTURE_EDGE - (_ROW_SPACING - _BOX_HEIGHT)
     parts = [
         f'<svg class="bt" xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {total:g} {height:g}" '
         f'width="{total:g}" height="{height:g}" role="img">',
@@ -64,7 +65,7 @@ def tree_svg(root: Behaviour, statuses: bool = False) -> str:
     return "\n".join([*parts, "</svg>"]) + "\n"
 
 
-_STYLE = """
+_TREE_STYLE = """
 text{font:500 13px system-ui,-apple-system,'Segoe UI',Roboto,'DejaVu Sans',sans-serif;fill:#17212b}
 text.r{font-size:10.5px;font-weight:400;fill:#667380}
 tspan{font-weight:700;fill:#2f62d9}
@@ -83,7 +84,7 @@ rect.decorator{fill:#2a2138;stroke:#5c4780}
 }
 """
 # Within a page or a notebook a style sheet holds for all of it.
-_SHEET = re.sub(r"(?m)^(?=[a-z])", ".bt ", _STYLE).replace("\n", "")
+_SHEET = re.sub(r"(?m)^(?=[a-z])", ".bt ", _TREE_STYLE).replace("\n", "")
 
 
 def _place(node: Behaviour, layer: int, row: int, boxes: list[_Box]) -> int:
@@ -99,7 +100,7 @@ def _place(node: Behaviour, layer: int, row: int, boxes: list[_Box]) -> int:
         box.children.append(boxes[below])
     if not box.children:
         after = row + 1
-        box.y = _EDGE + row * _ROW + _BOX / 2
+        box.y = _PICTURE_EDGE + row * _ROW_SPACING + _BOX_HEIGHT / 2
     else:
         box.y = (box.children[0].y + box.children[-1].y) / 2
     return after
@@ -107,8 +108,8 @@ def _place(node: Behaviour, layer: int, row: int, boxes: list[_Box]) -> int:
 
 def _svg_box(box: _Box, x: float, statuses: bool) -> str:
     shown, status = box.shown, box.node.status
-    top = box.y - _BOX / 2
-    radius = _BOX / 2 if shown.kind == "leaf" else 7
+    top = box.y - _BOX_HEIGHT / 2
+    radius = _BOX_HEIGHT / 2 if shown.kind == "leaf" else 7
     # As a style: an attribute would be weaker than the style sheet.
     ticked = statuses and status is not Status.INVALID
     colour = f' style="stroke:{COLOURS[status]};stroke-width:2.4"' if ticked else ""
@@ -118,8 +119,9 @@ def _svg_box(box: _Box, x: float, statuses: bool) -> str:
     name = _xml(shown.title.removeprefix(f"{shown.glyph} "))
     remark = f'<text class="r" x="{x + 11:g}" y="{box.y + 11:g}">{_xml(shown.remark)}</text>'
     return (
-        f'<g{faint}><rect class="{shown.kind}" x="{x:g}" y="{top:g}" width="{box.width:g}" height="{_BOX:g}" '
-        f'rx="{radius:g}"{colour}/><text x="{x + 11:g}" y="{base:g}">{glyph}{name}</text>'
+        f'<g{faint}><rect class="{shown.kind}" x="{x:g}" y="{top:g}" width="{box.width:g}" '
+        f'height="{_BOX_HEIGHT:g}" rx="{radius:g}"{colour}/>'
+        f'<text x="{x + 11:g}" y="{base:g}">{glyph}{name}</text>'
         f"{remark if shown.remark else ''}</g>"
     )
 

@@ -9,7 +9,7 @@ from py_trees.decorators import Decorator
 
 from robobt.config.errors import short_repr, text_of
 
-MAX_DEPTH = 200
+MAX_TREE_DEPTH = 200
 """Nodes from the root of a tree down; Python itself takes some hundreds."""
 
 
@@ -80,8 +80,8 @@ def fault_of(root: Behaviour, shared: bool = False) -> tuple[Behaviour, str] | N
             one = parents[id(child)]
             where = "twice" if one is node or one is None else f"of {node_path(one)!r} and"
             return child, f"is a child {where} of {node_path(node)!r}; make a node for each place"
-        elif len(way) == MAX_DEPTH:
-            return root, f"a tree may be {MAX_DEPTH} nodes deep, and this one is deeper"
+        elif len(way) == MAX_TREE_DEPTH:
+            return root, f"a tree may be {MAX_TREE_DEPTH} nodes deep, and this one is deeper"
         else:
             parents[id(child)] = node
             above.add(id(child))

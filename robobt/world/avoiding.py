@@ -8,11 +8,19 @@ import numpy as np
 
 from robobt.world.compiled import compilable, compiled
 from robobt.world.geometry import FloatArray
-from robobt.world.observation import Entry, ObservationSpec, entries, kinematics, motion, record_of, turned
+from robobt.world.observation import (
+    ObservationEntry,
+    ObservationSpec,
+    entries,
+    kinematics,
+    motion,
+    record_of,
+    turned,
+)
 from robobt.world.records import BALL, ROBOT
 from robobt.world.state import ROBOT_RADIUS, Frame, RobotState
 
-SPEED = 1.5
+WAY_SPEED = 1.5
 """Speed of the tested ways [m/s]; slow ways have half of it."""
 
 WAYS, SLOW_WAYS = 16, 8
@@ -38,23 +46,26 @@ GO_TO_BALL_AMONG_ROBOTS = ObservationSpec(
         *entries("ball_distance", "m", "far", 3.0, signed=False),
         *entries("vx vy", "m/s", "speed", "max_speed"),
         *entries("omega", "rad/s", "turn", "max_turn"),
-        *(Entry(f"free_{way * 360 // WAYS}", "s", AHEAD, signed=False) for way in range(WAYS)),
-        *(Entry(f"slow_{way * 360 // SLOW_WAYS}", "s", AHEAD, signed=False) for way in range(SLOW_WAYS)),
-        Entry("standing", "s", AHEAD, signed=False),
+        *(ObservationEntry(f"free_{way * 360 // WAYS}", "s", AHEAD, signed=False) for way in range(WAYS)),
+        *(
+            ObservationEntry(f"slow_{way * 360 // SLOW_WAYS}", "s", AHEAD, signed=False)
+            for way in range(SLOW_WAYS)
+        ),
+        ObservationEntry("standing", "s", AHEAD, signed=False),
     ),
     vectors=(0, 3),
 )
 """The ball, the robot's velocity, and how long ways in all directions are free.
 
 ``ball_x`` and ``ball_y`` are the direction to the ball in the robot's frame, of length 1. ``free_A`` is for
-how long the robot can drive at :data:`SPEED` in the direction A degrees to the left of the ball's until it
-and another robot are nearer than :data:`MARGIN`, if the others keep their velocity: at most :data:`AHEAD`, 0
-if they are that near and get nearer. ``slow_A`` is that time at half the speed, ``standing`` at rest: the
-velocity obstacles of Fiorini & Shiller (1998), seen from the robot.
+how long the robot can drive at :data:`WAY_SPEED` in the direction A degrees to the left of the ball's until
+it and another robot are nearer than :data:`MARGIN`, if the others keep their velocity: at most
+:data:`AHEAD`, 0 if they are that near and get nearer. ``slow_A`` is that time at half the speed,
+``standing`` at rest: the velocity obstacles of Fiorini & Shiller (1998), seen from the robot.
 """
 
 
-_HEAD = record_of(GO_TO_BALL_AMONG_ROBOTS.entries[:FIRST_WAY])
+_VECTOR_HEAD = record_of(GO_TO_BALL_AMONG_ROBOTS.entries[:FIRST_WAY])
 
 
 @compilable
@@ -84,7 +95,7 @@ def among_robots_rows(robots: FloatArray, balls: FloatArray) -> FloatArray:
     """
     rows = np.empty((len(robots), FIRST_WAY + WAYS + SLOW_WAYS + 1))
     each, rolling = robots.view(ROBOT)[..., 0], balls.view(BALL)[:, 0]
-    heads = rows[:, :FIRST_WAY].view(_HEAD)[:, 0]
+    heads = rows[:, :FIRST_WAY].view(_VECTOR_HEAD)[:, 0]
     for i in range(len(rows)):
         me, others, ball, seen = each[i, 0], each[i, 1:], rolling[i], heads[i]
         c, s = cos(me.heading), sin(me.heading)
@@ -101,9 +112,9 @@ def among_robots_rows(robots: FloatArray, balls: FloatArray) -> FloatArray:
         for way in range(WAYS + SLOW_WAYS + 1):
             speed, angle = 0.0, 0.0
             if way < WAYS:
-                speed, angle = SPEED, 2.0 * pi * way / WAYS
+                speed, angle = WAY_SPEED, 2.0 * pi * way / WAYS
             elif way < WAYS + SLOW_WAYS:
-                speed, angle = 0.5 * SPEED, 2.0 * pi * (way - WAYS) / SLOW_WAYS
+                speed, angle = 0.5 * WAY_SPEED, 2.0 * pi * (way - WAYS) / SLOW_WAYS
             ahead, aside = speed * cos(angle), speed * sin(angle)
             vx, vy = ux * ahead - uy * aside, uy * ahead + ux * aside
             free = AHEAD

@@ -14,7 +14,7 @@ from robobt.world.compiled import compilable
 GRAVITY = 9.81
 """Acceleration of free fall [m/s^2]."""
 
-_LAST_APEX = 0.01
+LOWEST_HOP = 0.01
 """Lowest hop; below it the ball rolls [m]. Source: Sumatra's model of a chip."""
 
 
@@ -109,7 +109,7 @@ class BallModel(Settings):
     def touch_downs(self, speed: float) -> list[tuple[float, float]]:
         """Return when and how far from the kick a ball chipped at ``speed`` [m/s] touches down [s, m]."""
         rises = [speed * sin(CHIP_ANGLE)]
-        while (rises[-1] * self.rebound) ** 2 >= 2.0 * GRAVITY * _LAST_APEX:
+        while (rises[-1] * self.rebound) ** 2 >= 2.0 * GRAVITY * LOWEST_HOP:
             rises.append(rises[-1] * self.rebound)
         times = [2.0 * rise / GRAVITY for rise in rises]
         ways = [self.along(speed, hop) * time for hop, time in enumerate(times)]
@@ -130,3 +130,9 @@ class BallModel(Settings):
 
 
 DEFAULT_BALL = BallModel()
+
+SLIDE_DECELERATION, ROLL_DECELERATION = DEFAULT_BALL.slide_deceleration, DEFAULT_BALL.roll_deceleration
+"""How the default ball slows down while it slides and while it rolls [m/s^2]."""
+
+SWITCH_SHARE = DEFAULT_BALL.switch_share
+"""Share of its kick's speed at which the default ball begins to roll."""

@@ -24,10 +24,10 @@ from robobt.world.compiled_key import DeepCache
 _log = logging.getLogger(__name__)
 
 _COMPILING = "numba:compile"
-_TOLD = "ROBOBT_COMPILING_TOLD"
+_COMPILING_VARIABLE = "ROBOBT_COMPILING_TOLD"
 """Set in the environment, which workers inherit."""
 
-_PATIENCE = 2.0
+_REPORTED_COMPILE_TIME = 2.0
 """Compilation time after which a message is printed [s]."""
 FloatArray = NDArray[np.float64]
 Function = TypeVar("Function", bound=Callable[..., object])
@@ -76,13 +76,13 @@ def timing_compilation() -> Iterator[Callable[[], float]]:
 class CompilingTold(TimingListener):
     """Prints once, on a terminal, that a run waits for the compiler; short waits are not reported."""
 
-    def __init__(self, patience: float = _PATIENCE) -> None:
+    def __init__(self, patience: float = _REPORTED_COMPILE_TIME) -> None:
         super().__init__()  # type: ignore[no-untyped-call]
         self._patience = patience
         # The first worker prints for all, unless the process that started it has done so.
         name = multiprocessing.current_process().name
         worker = multiprocessing.parent_process() is not None
-        self._told = worker and (_TOLD in os.environ or not name.endswith("-1"))
+        self._told = worker and (_COMPILING_VARIABLE in os.environ or not name.endswith("-1"))
 
     def on_start(self, event: Event) -> None:
         """Note that a function is being compiled, and how long those before it took."""
@@ -90,7 +90,7 @@ class CompilingTold(TimingListener):
         if self._told or not self.done or self.duration < self._patience or not sys.stderr.isatty():
             return
         self._told = True
-        os.environ[_TOLD] = "1"
+        os.environ[_COMPILING_VARIABLE] = "1"
         _log.warning(
             "compiling for this machine, as on the first run after an installation or an update: "
             "a minute or more, once; later runs load what was compiled"

@@ -37,9 +37,9 @@ class Division:
 A = Division("A", 11, 5.0, aimless_kick=False, must_place=True, failure_loses_kick=True)
 B = Division("B", 6, 10.0, aimless_kick=True, must_place=False, failure_loses_kick=False)
 
-_BORDER = (FIELD_A.length + FIELD_B.length) / 2
+_LENGTH_BETWEEN_DIVISIONS = (FIELD_A.length + FIELD_B.length) / 2
 
 
 def division_of(field: FieldGeometry) -> Division:
     """Return the division whose field is nearest in length; fields may differ from the rules' sizes."""
-    return A if field.length > _BORDER else B
+    return A if field.length > _LENGTH_BETWEEN_DIVISIONS else B

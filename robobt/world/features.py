@@ -33,7 +33,7 @@ from robobt.world.observation import (
     turned,
 )
 from robobt.world.observation import ObservationSpec as ObservationSpec
-from robobt.world.records import BALL, PLACE, ROBOT, Ball, Place, Robot
+from robobt.world.records import BALL, FIELD_PLACE, ROBOT, Ball, Place, Robot
 from robobt.world.scoring import SCORE_ON_GOALKEEPER
 from robobt.world.state import Frame, RobotState
 from robobt.world.team_view import places_of, team_view
@@ -119,9 +119,13 @@ class Opponent(Protocol):
 
 
 _WITHOUT_GOAL, _SHOOT_SIZE, _SHOT_SIZE = GO_TO_BALL.size, SHOOT.size, SHOT.size
-_GO_TO_BALL, _SHOOT, _SHOT = record_of(GO_TO_BALL.entries), record_of(SHOOT.entries), record_of(SHOT.entries)
+_GO_TO_BALL_FIELDS, _SHOOT_FIELDS, _SHOT_FIELDS = (
+    record_of(GO_TO_BALL.entries),
+    record_of(SHOOT.entries),
+    record_of(SHOT.entries),
+)
 _GOAL = record_of(GO_TO_BALL_TO_SHOOT.entries[_WITHOUT_GOAL:])
-_SCENE, _OPPONENT = record_of(SHOT_SCENE.entries[:SCENE_HEAD]), record_dtype(Opponent)
+_SCENE_FIELDS, _OPPONENT_FIELDS = record_of(SHOT_SCENE.entries[:SCENE_HEAD]), record_dtype(Opponent)
 
 OBSERVATIONS = {
     spec.name: spec
@@ -240,7 +244,7 @@ def go_to_ball_rows(robots: FloatArray, balls: FloatArray, goal_x: float, size: 
     """
     rows = np.empty((len(robots), size))
     each, rolling = robots.view(ROBOT)[:, 0], balls.view(BALL)[:, 0]
-    seen = rows[:, :_WITHOUT_GOAL].view(_GO_TO_BALL)[:, 0]
+    seen = rows[:, :_WITHOUT_GOAL].view(_GO_TO_BALL_FIELDS)[:, 0]
     for i in range(len(rows)):
         _observe_go_to_ball(each[i], rolling[i], seen[i])
     if size > _WITHOUT_GOAL:
@@ -259,7 +263,7 @@ def shoot_rows(robots: FloatArray, balls: FloatArray, goal_x: float, post_y: flo
     long axis [m].
     """
     rows = np.empty((len(robots), _SHOOT_SIZE))
-    each, rolling, seen = robots.view(ROBOT)[:, 0], balls.view(BALL)[:, 0], rows.view(_SHOOT)[:, 0]
+    each, rolling, seen = robots.view(ROBOT)[:, 0], balls.view(BALL)[:, 0], rows.view(_SHOOT_FIELDS)[:, 0]
     for i in range(len(rows)):
         _observe_shoot(each[i], rolling[i], goal_x, post_y, seen[i])
     return rows
@@ -275,8 +279,12 @@ def shot_features(shooter: FloatArray, targets: FloatArray, opponents: FloatArra
     Positions in metres: the ``shooter`` (2,), ``targets`` (T, 2) and ``opponents`` (K, 2).
     """
     rows = np.empty((len(targets), len(opponents), _SHOT_SIZE))
-    me, aims, others = shooter.view(PLACE)[0], targets.view(PLACE)[:, 0], opponents.view(PLACE)[:, 0]
-    seen = rows.view(_SHOT)[..., 0]
+    me, aims, others = (
+        shooter.view(FIELD_PLACE)[0],
+        targets.view(FIELD_PLACE)[:, 0],
+        opponents.view(FIELD_PLACE)[:, 0],
+    )
+    seen = rows.view(_SHOT_FIELDS)[..., 0]
     for i in range(len(aims)):
         for k in range(len(others)):
             _observe_shot(me, aims[i], others[k], seen[i, k])
@@ -306,9 +314,9 @@ def shot_scene(
         their distance from the segment; places that are left are :data:`ABSENT`.
     """
     rows = np.empty((len(targets), SCENE_HEAD + len(ABSENT) * SCENE_OPPONENTS))
-    each, rolling, aims = shooters.view(ROBOT)[:, 0], balls.view(BALL)[:, 0], targets.view(PLACE)[:, 0]
+    each, rolling, aims = shooters.view(ROBOT)[:, 0], balls.view(BALL)[:, 0], targets.view(FIELD_PLACE)[:, 0]
     others, gaps = opponents.view(ROBOT)[..., 0], np.empty(SCENE_OPPONENTS)
-    seen, places = rows[:, :SCENE_HEAD].view(_SCENE)[:, 0], rows[:, SCENE_HEAD:].view(_OPPONENT)
+    seen, places = rows[:, :SCENE_HEAD].view(_SCENE_FIELDS)[:, 0], rows[:, SCENE_HEAD:].view(_OPPONENT_FIELDS)
     for i in range(len(rows)):
         line = _observe_scene(each[i], rolling[i], aims[i], seen[i])
         _observe_opponents(each[i], line, others[i], places[i], gaps)
@@ -334,7 +342,7 @@ def _go_to_ball(frame: Frame, robot: RobotState, size: int) -> FloatArray:
 @compiled
 def _go_to_ball_row(robot: Row, ball: Row, goal_x: float, row: FloatArray) -> None:
     me, rolling = robot_named(robot), ball_named(ball)
-    _observe_go_to_ball(me, rolling, row[:_WITHOUT_GOAL].view(_GO_TO_BALL)[0])
+    _observe_go_to_ball(me, rolling, row[:_WITHOUT_GOAL].view(_GO_TO_BALL_FIELDS)[0])
     if len(row) > _WITHOUT_GOAL:
         _observe_goal(me, rolling, goal_x, row[_WITHOUT_GOAL:].view(_GOAL)[0])
 
@@ -348,4 +356,4 @@ def shoot_of(frame: Frame, robot: RobotState) -> FloatArray:
 
 @compiled
 def _shoot_row(robot: Row, ball: Row, goal_x: float, post_y: float, row: FloatArray) -> None:
-    _observe_shoot(robot_named(robot), ball_named(ball), goal_x, post_y, row.view(_SHOOT)[0])
+    _observe_shoot(robot_named(robot), ball_named(ball), goal_x, post_y, row.view(_SHOOT_FIELDS)[0])

@@ -156,7 +156,7 @@ class GameState:
     @property
     def next_team(self) -> Team | None:
         """The team of the restart after this stop or placement; None for both teams, or if unknown."""
-        return None if self.upcoming is None else _TEAMS.get(self.upcoming)
+        return None if self.upcoming is None else _COMMAND_TEAMS.get(self.upcoming)
 
     def mirrored(self) -> GameState:
         """Return the same state in coordinates turned by 180 degrees."""
@@ -174,7 +174,7 @@ STARTED = (
     RefereeCommand.DIRECT_FREE_YELLOW,
 )
 """Commands under which a team may play the ball, and time is counted."""
-_TEAMS = {
+_COMMAND_TEAMS = {
     command: Team.BLUE if command.name.endswith("_BLUE") else Team.YELLOW
     for command in RefereeCommand
     if command.name.endswith(("_BLUE", "_YELLOW"))

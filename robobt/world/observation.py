@@ -74,7 +74,7 @@ SCALES = "max_speed", "max_turn"
 
 
 @dataclass(frozen=True, slots=True)
-class Entry:
+class ObservationEntry:
     """An entry of an observation vector.
 
     Attributes:
@@ -111,7 +111,7 @@ class ObservationSpec:
 
     name: str
     version: int
-    entries: tuple[Entry, ...]
+    entries: tuple[ObservationEntry, ...]
     vectors: tuple[int, ...] = ()
 
     @property
@@ -142,7 +142,7 @@ OWN_OBSERVATIONS: dict[str, Observation] = {}
 
 
 def own_observation(
-    name: str, version: int, *vector: Entry
+    name: str, version: int, *vector: ObservationEntry
 ) -> Callable[[Callable[[Seen], FloatArray]], Observation]:
     """Return a decorator that registers a function as the maker of a user's observation.
 
@@ -173,15 +173,15 @@ def _place(function: Callable[..., object]) -> tuple[object, str]:
 
 def entries(
     names: str, unit: str = "1", most: float | str = inf, scale: float | str = 1.0, *, signed: bool = True
-) -> tuple[Entry, ...]:
+) -> tuple[ObservationEntry, ...]:
     """Return entries with these ``names``, separated by blanks; ``most`` is their range.
 
-    The rest is as for :class:`Entry`.
+    The rest is as for :class:`ObservationEntry`.
     """
-    return tuple([Entry(name, unit, most, scale, signed) for name in names.split()])
+    return tuple([ObservationEntry(name, unit, most, scale, signed) for name in names.split()])
 
 
-def record_of(vector: Iterable[Entry]) -> np.dtype[np.record]:
+def record_of(vector: Iterable[ObservationEntry]) -> np.dtype[np.record]:
     """Return the record as which compiled code fills in a vector, or a part of one, by entries' names."""
     fields = np.dtype([(entry.name, np.float64) for entry in vector])
     return cast("np.dtype[np.record]", np.dtype((np.record, fields)))

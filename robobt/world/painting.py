@@ -21,8 +21,13 @@ _FINER = 2
 """Drawn this much larger and averaged down, for smooth edges."""
 
 _GRASS, _STRIPES, _PAINT = (63, 131, 90), ((74, 149, 102), (79, 156, 108)), (240, 246, 242)
-_BLUE, _YELLOW, _BALL, _DARK = (47, 111, 237), (242, 194, 27), (255, 122, 26), (20, 32, 43)
-_COLOURS = {Team.BLUE: _BLUE, Team.YELLOW: _YELLOW}
+_BLUE_COLOUR, _YELLOW_COLOUR, _BALL_COLOUR, _DARK_COLOUR = (
+    (47, 111, 237),
+    (242, 194, 27),
+    (255, 122, 26),
+    (20, 32, 43),
+)
+_COLOURS = {Team.BLUE: _BLUE_COLOUR, Team.YELLOW: _YELLOW_COLOUR}
 _ROBOT_TRAIL, _BALL_TRAIL = (142, 190, 255), (255, 178, 120)
 
 
@@ -67,12 +72,12 @@ class Painter:
                 )
         known = isfinite(ball[0])
         if reach is not None and known:
-            pen.ellipse(self._round(*ball, reach), outline=_BALL, width=self._wide(0.012))
+            pen.ellipse(self._round(*ball, reach), outline=_BALL_COLOUR, width=self._wide(0.012))
         for robot in robots:
             self._paint_robot(pen, *robot)
         if known:
             spot = self._round(*ball, 1.4 * BALL_RADIUS)
-            pen.ellipse(spot, fill=_BALL, outline=_DARK, width=self._wide(0.006))
+            pen.ellipse(spot, fill=_BALL_COLOUR, outline=_DARK_COLOUR, width=self._wide(0.006))
         return image.reduce(_FINER)
 
     def _paint_robot(
@@ -87,16 +92,16 @@ class Painter:
             start,
             start + 360.0 - 2.0 * degrees(opening),
             fill=_COLOURS[team],
-            outline=_DARK,
+            outline=_DARK_COLOUR,
             width=self._wide(0.01),
         )
         corners = [
             self._at(x + ROBOT_RADIUS * cos(heading + turn), y + ROBOT_RADIUS * sin(heading + turn))
             for turn in (opening, -opening)
         ]
-        pen.line(corners, fill=_DARK, width=self._wide(0.024))
+        pen.line(corners, fill=_DARK_COLOUR, width=self._wide(0.024))
         if label:
-            colour = _DARK if team is Team.YELLOW else _PAINT
+            colour = _DARK_COLOUR if team is Team.YELLOW else _PAINT
             pen.text(self._at(x, y), label, fill=colour, font=font(self._wide(0.12)), anchor="mm")
         else:
             nose = x + 0.6 * self._face * cos(heading), y + 0.6 * self._face * sin(heading)
@@ -117,7 +122,7 @@ class Painter:
         pen.line([self._at(-half, 0.0), self._at(half, 0.0)], fill=_PAINT, width=line)
         pen.ellipse(self._round(0.0, 0.0, field.center_radius), outline=_PAINT, width=line)
         area = field.defense_width / 2
-        for sign, colour in ((-1.0, _BLUE), (1.0, _YELLOW)):
+        for sign, colour in ((-1.0, _BLUE_COLOUR), (1.0, _YELLOW_COLOUR)):
             front, back = sign * (half - field.defense_depth), sign * (half + field.goal_depth)
             pen.rectangle(self._box(front, -area, sign * half, area), outline=_PAINT, width=line)
             pale = tuple((3 * ground + own) // 4 for ground, own in zip(_GRASS, colour, strict=True))

@@ -7,7 +7,7 @@ from math import cos, sin
 
 from robobt.world.field import FieldGeometry
 
-_MOUTH = 0.6
+_FRONT_HALF_ANGLE = 0.6
 """How far to either side of the heading the flat front reaches [rad]."""
 
 
@@ -59,7 +59,8 @@ def field_svg(
 
 def _robot(colour: str, number: int, x: float, y: float, heading: float, radius: float) -> str:
     corners = [
-        (x + radius * cos(heading + turn), -y - radius * sin(heading + turn)) for turn in (_MOUTH, -_MOUTH)
+        (x + radius * cos(heading + turn), -y - radius * sin(heading + turn))
+        for turn in (_FRONT_HALF_ANGLE, -_FRONT_HALF_ANGLE)
     ]
     (x1, y1), (x2, y2) = corners
     return (

@@ -21,16 +21,16 @@ from robobt.world.state import (
     RobotState,
 )
 
-_STEP = 0.005
+_PREDICTION_STEP = 0.005
 """Longest step of the motion model [s]."""
 
-_LONGEST_GAP = 0.1
+_LONGEST_COMMANDED_GAP = 0.1
 """A robot seen in the same place for longer than this stands there, despite its commands [s]."""
 
-_CARRIED = 0.03
+_CARRIED_DISTANCE = 0.03
 """A ball seen within this distance of its place in the mouth is in the mouth [m]."""
 
-_FRONT = 0.08
+_DEFAULT_FRONT = 0.08
 """Default distance from the centre to the flat front [m]."""
 
 _FADES = 0.04
@@ -44,7 +44,7 @@ class _Sent(NamedTuple):
     commands: Mapping[RobotId, RobotCommand]
 
 
-class _Seen(NamedTuple):
+class _LastSeen(NamedTuple):
     """A robot as it was seen last, and from when on its commands count [s]."""
 
     robot: RobotState
@@ -74,7 +74,7 @@ class PredictedWorld(WrappedWorld):
         self.command_delay = command_delay
         self._gaps = gaps
         self._sent: deque[_Sent] = deque(maxlen=64)
-        self._missed: dict[RobotId, _Seen] = {}
+        self._missed: dict[RobotId, _LastSeen] = {}
         self._now = 0.0
 
     def reset(self, placement: Placement, seed: int) -> None:
@@ -109,8 +109,8 @@ class PredictedWorld(WrappedWorld):
         if self._gaps:
             last = self._missed.get(robot)
             if last is not None and _same(last.robot, seen):
-                since = max(last.since, since - _LONGEST_GAP)
-            self._missed[robot] = _Seen(seen, since)
+                since = max(last.since, since - _LONGEST_COMMANDED_GAP)
+            self._missed[robot] = _LastSeen(seen, since)
         if since < 0.0:
             since = min(0.0, until)
         state = replace(seen)
@@ -118,7 +118,7 @@ class PredictedWorld(WrappedWorld):
             begin = max(since, time + self.command_delay)
             end = until if i + 1 == len(self._sent) else self._sent[i + 1].time + self.command_delay
             if end > begin:
-                _drive(state, commands.get(robot, _STILL), min(end, until) - begin)
+                _drive(state, commands.get(robot, _STAND_STILL), min(end, until) - begin)
         return state
 
     def _ball(self, seen: Frame, now: tuple[RobotState, ...]) -> BallState:
@@ -133,14 +133,14 @@ class PredictedWorld(WrappedWorld):
             rolled.vz = ball.vz - GRAVITY * age if rolled.z > 0.0 else 0.0
         for robot in now:
             dx, dy = rolled.x - robot.x, rolled.y - robot.y
-            gap, least = hypot(dx, dy), _FRONT + BALL_RADIUS
+            gap, least = hypot(dx, dy), _DEFAULT_FRONT + BALL_RADIUS
             # No ball lies inside a robot.
             if 0.0 < gap < least and rolled.z < ROBOT_HEIGHT:
                 rolled.x, rolled.y = robot.x + dx / gap * least, robot.y + dy / gap * least
         return rolled
 
 
-_STILL = RobotCommand()
+_STAND_STILL = RobotCommand()
 
 
 def _held(ball: BallState, holding: list[tuple[RobotState, RobotState]], age: float) -> BallState:
@@ -154,8 +154,8 @@ def _held(ball: BallState, holding: list[tuple[RobotState, RobotState]], age: fl
         c, s = cos(before.heading), sin(before.heading)
         dx, dy = ball.x - before.x, ball.y - before.y
         ahead, aside = c * dx + s * dy, c * dy - s * dx
-        place = _FRONT + BALL_RADIUS
-        if abs(ahead - place) > _CARRIED or abs(aside) > _FRONT / 2:
+        place = _DEFAULT_FRONT + BALL_RADIUS
+        if abs(ahead - place) > _CARRIED_DISTANCE or abs(aside) > _DEFAULT_FRONT / 2:
             # The ball was not in the mouth yet when it was seen.
             ahead, aside, fresh = place, 0.0, 0.0
         c, s = cos(after.heading), sin(after.heading)
@@ -183,7 +183,7 @@ def _same(one: RobotState, other: RobotState) -> bool:
 def _drive(state: RobotState, command: RobotCommand, time: float) -> None:
     """Move a robot on under one command, as its limits let it; they form an ellipse in its frame."""
     limits = state.limits
-    steps = max(1, ceil(time / _STEP - 1e-9))
+    steps = max(1, ceil(time / _PREDICTION_STEP - 1e-9))
     dt = time / steps
     fast = hypot(command.vx, command.vy)
     share = min(1.0, limits.max_speed / fast) if fast > 0.0 else 1.0

@@ -148,7 +148,7 @@ class Trip(Protocol):
 
 
 ROBOT, BALL, LIMITS = record_dtype(Robot), record_dtype(Ball), record_dtype(Limits)
-PLACE = record_dtype(Place)
+FIELD_PLACE = record_dtype(Place)
 MOVER, MEETING = record_dtype(Mover), record_dtype(Meeting)
 SCENE, TRIP = record_dtype(Scene), record_dtype(Trip)
 
@@ -156,18 +156,18 @@ ROBOT_SIZE, BALL_SIZE, MOVER_SIZE = (len(kind.names or ()) for kind in (ROBOT, B
 """How many numbers they are."""
 
 _MOST_KNOWN = 256
-_KNOWN: dict[int, tuple[RobotLimits, FloatArray]] = {}
+_KNOWN_LIMITS: dict[int, tuple[RobotLimits, FloatArray]] = {}
 """By the limits' id, which stays theirs as they are kept too: hashing and comparing a model takes longer."""
 
 
 def limits_of(limits: RobotLimits) -> FloatArray:
     """Return a robot's limits as the numbers of :class:`Limits`; made once."""
-    known = _KNOWN.get(id(limits))
+    known = _KNOWN_LIMITS.get(id(limits))
     if known is None:
-        if len(_KNOWN) >= _MOST_KNOWN:
-            _KNOWN.clear()
+        if len(_KNOWN_LIMITS) >= _MOST_KNOWN:
+            _KNOWN_LIMITS.clear()
         numbers = [getattr(limits, name) for name in LIMITS.names or ()]
-        known = _KNOWN[id(limits)] = (limits, np.array(numbers, dtype=np.float64))
+        known = _KNOWN_LIMITS[id(limits)] = (limits, np.array(numbers, dtype=np.float64))
     return known[1]
 
 

@@ -39,6 +39,10 @@ STOP_SPEED = 1.5
 STOP_DISTANCE = 0.5
 """Distance to the ball while the game is stopped or the opponents restart it. Source: SSL rules [m]."""
 
+KICKED_SHARE, KICKED_SPEED = 0.25, 1.0
+"""A kicked ball leaves its robot with this share of the commanded speed, or this fast [m/s]."""
+
+
 AREA_DISTANCE = 0.2
 """Distance to the opponents' defence area while the game is stopped or restarts. Source: SSL rules [m]."""
 
@@ -48,7 +52,7 @@ PLACED_DISTANCE = 0.15
 CARRY_DISTANCE = 1.0
 """A robot may carry the ball no farther than this, as the crow flies. Source: SSL rules [m]."""
 
-_FRONT = 0.075
+_FRONT_DISTANCE = 0.075
 """Distance of the flat front from the robot's centre [m]."""
 
 _TOUCH_GAP = 0.005
@@ -205,7 +209,7 @@ def against_hull(dx: float, dy: float, heading: float) -> bool:
     reach = ROBOT_RADIUS + BALL_RADIUS + _TOUCH_GAP
     if dx * dx + dy * dy > reach * reach:
         return False
-    return cos(heading) * dx + sin(heading) * dy <= _FRONT + BALL_RADIUS + _TOUCH_GAP
+    return cos(heading) * dx + sin(heading) * dy <= _FRONT_DISTANCE + BALL_RADIUS + _TOUCH_GAP
 
 
 def has_ball(robot: RobotState, ball: BallState, sector: float = MOUTH_SECTOR) -> bool:
@@ -220,7 +224,13 @@ def has_ball(robot: RobotState, ball: BallState, sector: float = MOUTH_SECTOR) -
     if robot.ball_contact:
         return True
     dx, dy = ball.x - robot.x, ball.y - robot.y
-    if dx > _REACH or dx < -_REACH or dy > _REACH or dy < -_REACH or ball.z > RECEIVED_HEIGHT:
+    if (
+        dx > _HOLDING_REACH
+        or dx < -_HOLDING_REACH
+        or dy > _HOLDING_REACH
+        or dy < -_HOLDING_REACH
+        or ball.z > RECEIVED_HEIGHT
+    ):
         return False
     return before_mouth(dx, dy, robot.heading, sector)
 
@@ -232,7 +242,7 @@ def before_mouth(dx: float, dy: float, heading: float, sector: float = MOUTH_SEC
     ``sector`` is on which side of the ``heading`` that may be [rad].
     """
     gap = hypot(dx, dy)
-    if gap >= _REACH:
+    if gap >= _HOLDING_REACH:
         return False
     return sector >= pi or cos(heading) * dx + sin(heading) * dy > cos(sector) * gap
 
@@ -251,7 +261,7 @@ def keeps_ball(robot: Robot, ball: Ball) -> bool:
 def owner(frame: Frame) -> RobotId | None:
     """Return the robot that has the ball; the nearest of several, or None."""
     best: RobotId | None = None
-    nearest = 2.0 * _REACH
+    nearest = 2.0 * _HOLDING_REACH
     for team, robots in ((frame.team, frame.own), (frame.team.other, frame.opponents)):
         for robot in robots:
             if has_ball(robot, frame.ball):
@@ -261,4 +271,4 @@ def owner(frame: Frame) -> RobotId | None:
     return best
 
 
-_REACH = ROBOT_RADIUS + BALL_RADIUS + HELD_GAP
+_HOLDING_REACH = ROBOT_RADIUS + BALL_RADIUS + HELD_GAP

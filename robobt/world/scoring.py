@@ -60,7 +60,7 @@ is, at most half as much.
 """
 
 
-_SEEN, _SIZE = record_of(SCORE_ON_GOALKEEPER.entries), SCORE_ON_GOALKEEPER.size
+_SCORING_FIELDS, _SIZE = record_of(SCORE_ON_GOALKEEPER.entries), SCORE_ON_GOALKEEPER.size
 
 
 @compiled_lean
@@ -96,7 +96,7 @@ def score_on_goalkeeper_rows(
     ``robots`` (n, 2, 6) are attacker and goalkeeper; the rest is as for :func:`shoot_rows`.
     """
     rows = np.empty((len(robots), _SIZE))
-    each, rolling, seen = robots.view(ROBOT)[..., 0], balls.view(BALL)[:, 0], rows.view(_SEEN)[:, 0]
+    each, rolling, seen = robots.view(ROBOT)[..., 0], balls.view(BALL)[:, 0], rows.view(_SCORING_FIELDS)[:, 0]
     for i in range(len(rows)):
         _observe_scoring(each[i, 0], rolling[i], each[i, 1], goal_x, post_y, seen[i])
     return rows
@@ -123,5 +123,5 @@ def score_on_goalkeeper_of(frame: Frame, robot: RobotState) -> FloatArray:
 
 @compiled
 def _scoring_row(robot: Row, ball: Row, keeper: Row, goal_x: float, post_y: float, row: FloatArray) -> None:
-    me, opponent, seen = robot_named(robot), robot_named(keeper), row.view(_SEEN)[0]
+    me, opponent, seen = robot_named(robot), robot_named(keeper), row.view(_SCORING_FIELDS)[0]
     _observe_scoring(me, ball_named(ball), opponent, goal_x, post_y, seen)

@@ -9,20 +9,20 @@ from typing import Any, TypeAlias
 from robobt.world.geometry import Point
 
 Shape: TypeAlias = list[Any]
-"""Layer, kind, what :data:`KINDS` says: numbers [m], and of a text or number the text or name."""
+"""Layer, kind, what :data:`SHAPE_KINDS` says: numbers [m], and of a text or number the text or name."""
 
-KINDS = {"line": 4, "point": 2, "circle": 3, "text": 2, "number": 1}
+SHAPE_KINDS = {"line": 4, "point": 2, "circle": 3, "text": 2, "number": 1}
 """How many numbers a shape of each kind has: x and y of its points, a circle's radius, a number itself."""
 
-_NAMED = ("text", "number")
+_KINDS_WITH_TEXT = ("text", "number")
 
 MOST_SHAPES = 200
 """Shapes that one robot draws at a tick; what is drawn beyond them is left out."""
 
 MOST_LAYERS = 60
 
-_LONGEST_NAME, _LONGEST_TEXT = 40, 80
-_FARTHEST = 1000.0
+_LONGEST_NAME, _LONGEST_DRAWN_TEXT = 40, 80
+_FARTHEST_POINT = 1000.0
 _LARGEST = 1e9
 
 
@@ -103,7 +103,7 @@ class Sketch:
             return
         try:
             shape = [layer, kind, *[round(float(number), 4) for number in numbers]]
-            shape += [str.__str__(each)[:_LONGEST_TEXT] for each in text]
+            shape += [str.__str__(each)[:_LONGEST_DRAWN_TEXT] for each in text]
             self._shapes.append(check_shape(shape))
         except (TypeError, ValueError, OverflowError):
             return
@@ -116,18 +116,20 @@ def check_shape(shape: Shape) -> Shape:
         ValueError: it is none.
     """
     layer, kind, *rest = shape if len(shape) > 2 else ("", "")
-    if not isinstance(layer, str) or not 0 < len(layer) <= _LONGEST_NAME or kind not in KINDS:
+    if not isinstance(layer, str) or not 0 < len(layer) <= _LONGEST_NAME or kind not in SHAPE_KINDS:
         raise ValueError("a shape is a layer's name, a kind and its numbers")
-    numbers, texts = rest[: KINDS[kind]], rest[KINDS[kind] :]
-    most = _LARGEST if kind == "number" else _FARTHEST
-    if len(numbers) < KINDS[kind] or not all(_is_number(each) and abs(each) <= most for each in numbers):
-        raise ValueError(f"a {kind} takes {KINDS[kind]} finite numbers")
+    numbers, texts = rest[: SHAPE_KINDS[kind]], rest[SHAPE_KINDS[kind] :]
+    most = _LARGEST if kind == "number" else _FARTHEST_POINT
+    if len(numbers) < SHAPE_KINDS[kind] or not all(
+        _is_number(each) and abs(each) <= most for each in numbers
+    ):
+        raise ValueError(f"a {kind} takes {SHAPE_KINDS[kind]} finite numbers")
     if kind == "circle" and numbers[2] < 0.0:
         raise ValueError("a circle's radius is not negative")
-    if len(texts) != (kind in _NAMED) or not all(
-        isinstance(text, str) and len(text) <= _LONGEST_TEXT for text in texts
+    if len(texts) != (kind in _KINDS_WITH_TEXT) or not all(
+        isinstance(text, str) and len(text) <= _LONGEST_DRAWN_TEXT for text in texts
     ):
-        raise ValueError(f"only texts and numbers have a text, of at most {_LONGEST_TEXT} characters")
+        raise ValueError(f"only texts and numbers have a text, of at most {_LONGEST_DRAWN_TEXT} characters")
     return shape
 
 

@@ -23,6 +23,10 @@ ROBOT_RADIUS = 0.09
 BALL_RADIUS = 0.0215
 """Radius of a golf ball [m]."""
 
+TOUCH_DISTANCE = ROBOT_RADIUS + BALL_RADIUS
+"""From a robot's centre to that of a ball that touches its round hull [m]."""
+
+
 ROBOT_HEIGHT = 0.15
 """Height of the tallest robot the rules allow; a ball above it passes over robots [m]."""
 

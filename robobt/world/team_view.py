@@ -21,7 +21,7 @@ from robobt.world.state import Frame, RobotState
 AWAY = 5.0
 """An empty place shows a resting robot this far behind [m]."""
 
-BALL = 7
+BALL_INDEX = 7
 """Index of the ball's place."""
 
 _ITSELF = (
@@ -43,12 +43,12 @@ _ITSELF = (
 )
 """What it sees of itself, the ball and both goals."""
 
-_SEEN = record_of(_ITSELF)
+_ITSELF_FIELDS = record_of(_ITSELF)
 _OWN, _EACH = len(_ITSELF), 4
-_TOLD = ("", "_restarts", "_restarts_double_touch")
+_RESTART_ENDINGS = ("", "_restarts", "_restarts_double_touch")
 """Suffixes of the name: no restarts, the team of a restart, or also the robot that may not touch the ball."""
 
-_NAME = re.compile(r"team_view_(\d|10)_(\d|1[01])(|_restarts|_restarts_double_touch)")
+_TEAM_VIEW_NAME = re.compile(r"team_view_(\d|10)_(\d|1[01])(|_restarts|_restarts_double_touch)")
 _ME = np.zeros(1, dtype=np.int64)
 
 
@@ -85,16 +85,16 @@ def team_view(mates: int, opponents: int, told: int = 0) -> ObservationSpec:
         ),
         *entries(" ".join(("restart", "barred")[:told]), most=1.0),
     )
-    return ObservationSpec(f"team_view_{mates}_{opponents}{_TOLD[told]}", 1, vector)
+    return ObservationSpec(f"team_view_{mates}_{opponents}{_RESTART_ENDINGS[told]}", 1, vector)
 
 
 def places_of(name: str) -> Places | None:
     """Return the places of the observation of that name, or None."""
-    found = _NAME.fullmatch(name)
+    found = _TEAM_VIEW_NAME.fullmatch(name)
     if found is None:
         return None
     mates, opponents, told = found.groups()
-    return Places(int(mates), int(opponents), _TOLD.index(told))
+    return Places(int(mates), int(opponents), _RESTART_ENDINGS.index(told))
 
 
 def team_view_of(
@@ -195,7 +195,7 @@ def _observe(
     me, sign = robots[index], 1.0 if first == 0 else -1.0
     c, s = cos(me.heading), sin(me.heading)
     goal_x, left = sign * goal[0], sign * goal[1]
-    seen = row[:_OWN].view(_SEEN)[0]
+    seen = row[:_OWN].view(_ITSELF_FIELDS)[0]
     seen.vx, seen.vy = turned(c, s, me.vx, me.vy)
     seen.omega = me.omega
     seen.x, seen.y, seen.cos_heading, seen.sin_heading = sign * me.x, sign * me.y, sign * c, sign * s

@@ -16,7 +16,7 @@ from robobt.match.recording import load_recording
 from robobt.plays import PLAYS, python_files
 from robobt.skills import SKILLS
 from robobt.skills.aim.raters import RATERS
-from robobt.skills.ball.go_to_ball import POLICIES
+from robobt.skills.ball.go_to_ball import GO_TO_BALL_POLICIES
 from tests.match.scripted import data
 from tests.registries import temporarily
 
@@ -326,7 +326,7 @@ class TestLists:
 
     def test_every_policy_is_listed(self):
         assert "Drive to the place beside the ball" in robobt("list", "policies").stdout
-        assert [entry["name"] for entry in told("list", "policies")["policies"]] == list(POLICIES)
+        assert [entry["name"] for entry in told("list", "policies")["policies"]] == list(GO_TO_BALL_POLICIES)
 
     @pytest.mark.parametrize("kind", ["plays", "skills", "raters", "policies", "tasks", "models"])
     def test_every_key_is_in_the_help(self, kind: str):

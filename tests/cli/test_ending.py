@@ -94,7 +94,7 @@ ends: {time_limit: 600}
 @pytest.fixture(autouse=True)
 def _no_end_by_force_in_this_process(monkeypatch: pytest.MonkeyPatch) -> None:
     """An orderly end takes longer on a busy machine, and one by force would end pytest; so does a start."""
-    monkeypatch.setattr(common, "_PATIENCE", LIMIT)
+    monkeypatch.setattr(common, "_ENDING_TIMEOUT", LIMIT)
     monkeypatch.setattr("robobt.league.placing.TIMEOUT", LIMIT)
 
 
@@ -148,7 +148,7 @@ def match(tmp_path: Path) -> Iterator[Callable[..., list[object]]]:
         busy = busy.replace("{number}", str(int(number))).replace("{recording}", str(recording))
         plays.write_text(DRIVES.replace("{busy}", busy))
         scenario.write_text(SCENARIO)
-        return ["match", scenario, "--import", plays, "--replay", recording]
+        return ["match", scenario, "--import", plays, "--record", recording]
 
     with temporarily(PLAYS):
         yield arguments
@@ -263,7 +263,7 @@ def served_six_v_six(endpoints: Endpoints) -> Iterator[dict[RobotId, RobotComman
 def six_v_six(endpoints: Endpoints, recording: Path) -> list[object]:
     """The arguments that play six against six there."""
     given = "&".join(f"{name}={getattr(endpoints, name)}" for name in Endpoints.model_fields)
-    return ["match", "six_v_six", "--trials", 1, "--world", f"league://grsim?{given}", "--replay", recording]
+    return ["match", "six_v_six", "--trials", 1, "--world", f"league://grsim?{given}", "--record", recording]
 
 
 def told_to_stop(last: dict[RobotId, RobotCommand]) -> bool:

@@ -21,7 +21,7 @@ TRIALS = 4
 
 
 def play(out: Path, recording: Path) -> None:
-    options = f"--trials {TRIALS} --workers 1 --record 0 --json --replay".split()
+    options = f"--trials {TRIALS} --workers 1 --record-trial 0 --json --record".split()
     app(["match", "striker_vs_goalie", *options, str(recording), "--out", str(out)], standalone_mode=False)
 
 

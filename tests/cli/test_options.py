@@ -8,7 +8,7 @@ import click
 import pytest
 import typer
 
-from robobt.cli import _COMMANDS, _GROUPS, application
+from robobt.cli import _COMMAND_GROUPS, _COMMANDS, application
 from robobt.cli.moved import COMMANDS, OPTIONS, what_became
 from robobt.cli.options import LETTERS, MEANINGS
 
@@ -31,7 +31,7 @@ ALL = [
 
 
 def test_there_are_twelve_commands() -> None:
-    assert len(_COMMANDS) + len(_GROUPS) == 12
+    assert len(_COMMANDS) + len(_COMMAND_GROUPS) == 12
 
 
 def test_every_option_is_in_the_table_and_its_help_begins_with_its_meaning() -> None:

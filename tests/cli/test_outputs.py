@@ -19,7 +19,7 @@ OUTPUTS = {"out", "record", "html", "log"}
 
 COMMANDS = [
     place
-    for commands in (cli._COMMANDS, *[commands for _, commands in cli._GROUPS.values()])
+    for commands in (cli._COMMANDS, *[commands for _, commands in cli._COMMAND_GROUPS.values()])
     for place, _ in commands.values()
 ]
 

@@ -9,7 +9,7 @@ import pytest
 from typer.testing import CliRunner, Result
 
 from robobt.cli import app
-from robobt.cli.refereeing import Stages, Who, refereed
+from robobt.cli.refereeing import MatchExtent, Who, refereed
 from robobt.league.referee.process import VARIABLE
 from robobt.match import load_scenario
 from tests.league.referee.conftest import program as program
@@ -53,7 +53,7 @@ def test_none_plays_freely_and_own_where_the_scenario_has_no_referee() -> None:
 
 
 def test_a_full_match_has_two_halves_of_five_minutes() -> None:
-    full, _ = refereed(load_scenario(WITH), None, None, Stages.FULL)
+    full, _ = refereed(load_scenario(WITH), None, None, MatchExtent.FULL)
     assert full.referee is not None
     assert full.referee.half_length == 300.0
     assert full.ends.time_limit >= 3600.0

@@ -58,7 +58,7 @@ def test_a_light_installation_plays() -> None:
 @pytest.mark.parametrize(
     ("command", "extra"),
     [
-        ("match striker_vs_goalie --trials 1 --replay out/x.html", "record"),
+        ("match striker_vs_goalie --trials 1 --record out/x.html", "record"),
         ("train go_to_ball", "learn"),
         ("serve striker_vs_goalie --seconds 1", "league"),
         ("collect shots -n 1 --out x.parquet", "shots"),

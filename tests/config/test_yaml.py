@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from robobt.config.errors import ConfigError
-from robobt.config.yaml import MAX_BYTES, MAX_DEPTH, parse_marked, read_yaml, write_yaml
+from robobt.config.yaml import MAX_YAML_BYTES, MAX_YAML_DEPTH, parse_marked, read_yaml, write_yaml
 
 plain = st.recursive(
     st.none() | st.booleans() | st.integers() | st.floats(allow_nan=False) | st.text(),
@@ -91,12 +91,12 @@ def test_every_value_knows_its_line_and_column() -> None:
         ("%YAML 1.1\n---\nyes", "file:2: is YAML 1.1; write YAML 1.2"),
         ("9" * 5000, "file:1: .* too many digits"),
         ("0x" + "f" * 5000, "file:1: .* too many digits"),
-        ("[" * (MAX_DEPTH + 1), f"file:1: nested deeper than {MAX_DEPTH} levels"),
-        ("[" * 20_000, f"file:1: nested deeper than {MAX_DEPTH} levels"),
+        ("[" * (MAX_YAML_DEPTH + 1), f"file:1: nested deeper than {MAX_YAML_DEPTH} levels"),
+        ("[" * 20_000, f"file:1: nested deeper than {MAX_YAML_DEPTH} levels"),
         ("a: [1", "file:1: "),
         (b"a: \xff", "file: is not text: "),
         ("a: \x00", "file: is not text: "),
-        (" " * (MAX_BYTES + 1), "file: is larger than 128 KiB"),
+        (" " * (MAX_YAML_BYTES + 1), "file: is larger than 128 KiB"),
     ],
 )
 def test_whatever_is_not_plain_is_one_line_with_file_and_line(text: str | bytes, problem: str) -> None:

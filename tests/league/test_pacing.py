@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import pytest
 
-from robobt.league.pacing import Pace
+from robobt.league.pacing import FrameBeat
 
 PERIOD = 1 / 60
 
 
 def play(frames: list[float], seconds: float) -> tuple[list[float], list[float]]:
     """When it acts, and how old the newest frame is then, for frames at these times."""
-    pace = Pace(PERIOD, 0.0)
+    pace = FrameBeat(PERIOD, 0.0)
     acts, ages = [], []
     now, index, newest = 0.0, 0, None
     while now < seconds:
@@ -54,6 +54,6 @@ def test_it_keeps_its_rate_when_frames_stop() -> None:
 
 
 def test_it_does_not_hurry_after_a_long_halt() -> None:
-    pace = Pace(PERIOD, 0.0)
+    pace = FrameBeat(PERIOD, 0.0)
     pace.acted(5.0, None)
     assert pace.opens() > 5.0

@@ -211,9 +211,9 @@ def test_two_teams_of_one_process_leave_each_other_alone() -> None:
 _OTHER = """
 import sys
 import time
-from robobt.league.claims import Claims
+from robobt.league.claims import RobotClaims
 from robobt.world import RobotId, Team
-claims = Claims(sys.argv[1], [RobotId(Team.BLUE, 0), RobotId(Team.YELLOW, 7)], list(Team), lambda: None)
+claims = RobotClaims(sys.argv[1], [RobotId(Team.BLUE, 0), RobotId(Team.YELLOW, 7)], list(Team), lambda: None)
 print(claims.taken, flush=True)
 time.sleep(60)
 """

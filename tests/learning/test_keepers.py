@@ -7,8 +7,8 @@ from math import pi, sqrt
 import numpy as np
 import pytest
 
-from robobt.learning.opponents.keepers import KINDS, Keepers
-from robobt.learning.opponents.straight import DRIVE, drive_of, drive_straight
+from robobt.learning.opponents.keepers import GOALKEEPER_KINDS, Keepers
+from robobt.learning.opponents.straight import DRIVING_LIMITS, drive_of, drive_straight
 from robobt.sim.records import COMMAND, size
 from robobt.world import DIVISION_B, RobotLimits, RobotState
 from robobt.world.geometry import FloatArray, wrap_angles
@@ -20,7 +20,7 @@ PERIOD = 0.03
 def decided(robots: FloatArray, balls: FloatArray, index: int, blue: int, kind: str) -> FloatArray:
     n = len(balls)
     keepers = Keepers(DIVISION_B, LIMITS, PERIOD, n, index, blue)
-    keepers.restart(np.arange(n), np.tile([KINDS.index(kind), 2.0, 0.3], (n, 1)))
+    keepers.restart(np.arange(n), np.tile([GOALKEEPER_KINDS.index(kind), 2.0, 0.3], (n, 1)))
     commands = np.zeros((n, robots.shape[1], size(COMMAND)))
     keepers.decide(robots, balls, np.zeros(robots.shape[:2], dtype=np.bool_), commands)
     assert not np.delete(commands, index, axis=1).any()
@@ -48,7 +48,7 @@ def test_a_goalkeeper_of_either_team_minds_the_opponent_nearest_to_the_ball(kind
 
 @pytest.mark.parametrize("way", [0.001, 0.2, 3.0])
 def test_a_robot_drives_so_that_it_stops_at_the_point_with_braking_in_reserve(way: float) -> None:
-    me, drive = RobotState(0, 1.0, 2.0, heading=pi / 2), drive_of(LIMITS, PERIOD).view(DRIVE)[0]
+    me, drive = RobotState(0, 1.0, 2.0, heading=pi / 2), drive_of(LIMITS, PERIOD).view(DRIVING_LIMITS)[0]
     ahead, left, _ = drive_straight(me, (1.0, 2.0 + way), (1.0, 3.0), 2.0, 6.0, drive)
     braking = min(LIMITS.braking, LIMITS.lateral_braking)
     assert ahead == pytest.approx(min(2.0, sqrt(2.0 * 0.8 * braking * way), way / PERIOD))
@@ -56,7 +56,7 @@ def test_a_robot_drives_so_that_it_stops_at_the_point_with_braking_in_reserve(wa
 
 
 def test_a_robot_turns_to_what_it_faces_and_no_faster_than_it_may() -> None:
-    me, drive = RobotState(0, 0.0, 0.0), drive_of(LIMITS, PERIOD).view(DRIVE)[0]
+    me, drive = RobotState(0, 0.0, 0.0), drive_of(LIMITS, PERIOD).view(DRIVING_LIMITS)[0]
     rates = [
         drive_straight(me, (0.0, 0.0), at, 2.0, 5.0, drive)[2] for at in ((1.0, 0.1), (-1.0, 0.1), (0, -1))
     ]

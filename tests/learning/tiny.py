@@ -8,7 +8,7 @@ import torch
 
 from robobt.learning.agents.ddpg import DDPG
 from robobt.learning.agents.nstep import Transitions
-from robobt.learning.agents.replay import Replay
+from robobt.learning.agents.replay import ReplayBuffer
 from robobt.learning.agents.settings import AgentSettings
 from robobt.learning.envs import StepResult
 from robobt.learning.training.evaluation import Evaluation
@@ -131,7 +131,7 @@ def learn(
 ) -> None:
     """Updates on batches of given transitions, with rates that fall to nothing if asked to."""
     sizes = transitions.observation.shape[1], transitions.action.shape[1]
-    replay = Replay(len(transitions.reward), *sizes)
+    replay = ReplayBuffer(len(transitions.reward), *sizes)
     replay.add(transitions)
     rng = np.random.default_rng(seed)
     for done in range(updates):

@@ -8,7 +8,7 @@ from time import perf_counter
 import pytest
 
 from robobt.live.hands import Hands
-from robobt.live.messages import Act, GiveOrder, MoveBall, Play, Skill
+from robobt.live.messages import Act, ChangeSkill, GiveOrder, MoveBall, Play
 from robobt.live.server import Server
 from robobt.match import MatchLoop, load_scenario
 from robobt.models.find import find_model
@@ -61,7 +61,7 @@ def test_a_page_lets_no_model_file_of_this_machine_be_loaded(asked: Asked, tmp_p
         for act in (
             Play(do="play", robot="blue 1", play="go_to_ball_and_shoot", params={"policy": name}),
             Play(do="play", robot="blue 1", play="go_to_ball_and_shoot", params={"policy": {"in": [name]}}),
-            Skill(do="skill", robot="blue 1", path=path, params={"rater": name}),
+            ChangeSkill(do="skill", robot="blue 1", path=path, params={"rater": name}),
         ):
             assert (
                 asked.told(act)

@@ -13,7 +13,7 @@ import pytest
 from websockets.exceptions import ConnectionClosed
 
 from robobt.live.hands import Hands
-from robobt.live.messages import MOST_BYTES, MOST_REFUSED, Message, read
+from robobt.live.messages import MOST_MESSAGE_BYTES, MOST_REFUSED, Message, read
 from robobt.live.server import Server
 from robobt.match import MatchLoop, load_scenario
 from robobt.plays import PLAYS
@@ -108,7 +108,7 @@ def test_whatever_is_sent_is_a_message_or_none(count: int) -> None:
     for data, _ in zip(hostile(1), range(count), strict=False):
         message = read(data)
         found["none" if message is None else message.do] += 1
-        assert message is None or len(data) <= MOST_BYTES
+        assert message is None or len(data) <= MOST_MESSAGE_BYTES
     print(dict(found))
     assert found["none"] > count / 3
     assert len(found) > 15

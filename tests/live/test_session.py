@@ -9,7 +9,7 @@ import pytest
 
 from benchmarks.live import bench_live
 from robobt.live.messages import Act, Pause, Seek, Speed
-from robobt.live.replayed import Replay
+from robobt.live.replayed import RecordingPlayback
 from robobt.live.server import Server
 from robobt.live.session import Live
 from robobt.match import MatchLoop, load_scenario, run_trials_in
@@ -121,7 +121,7 @@ def test_a_recording_is_gone_on_with_from_any_time(
     with MatchLoop(scenario, 3, sim_world, path) as match:
         while match.tick():
             pass
-    replay = Replay(server, path, speed=20.0)
+    replay = RecordingPlayback(server, path, speed=20.0)
     act(server, Pause(do="pause", on=True))
     showing = threading.Thread(target=replay.show)
     showing.start()
@@ -148,7 +148,7 @@ def test_a_recording_is_shown_as_it_was_played(server: Server, scenario: Scenari
     with MatchLoop(scenario, 3, sim_world, path) as match:
         while match.tick():
             pass
-    replay = Replay(server, path, start=1.0, speed=20.0)
+    replay = RecordingPlayback(server, path, start=1.0, speed=20.0)
     showing = threading.Thread(target=replay.show)
     showing.start()
     try:

@@ -79,7 +79,7 @@ RETURNED = [
 
 
 def messages(body: str, number: int, path: Path) -> tuple[str, str]:
-    """Return what `robobt tree` and a scenario say about a play with this body."""
+    """Return what `robobt show` and a scenario say about a play with this body."""
     path.write_text(FILE.format(number=number, line=body))
     with temporarily(PLAYS):
         shown = CliRunner().invoke(app, ["show", f"broken_{number}", "--import", str(path)])

@@ -19,7 +19,7 @@ from robobt.plays import PLAYS, python_files
 from robobt.plays.python_files import PythonFileError, import_file, imported_files
 from robobt.skills import SKILLS
 from robobt.skills.aim.raters import RATERS
-from robobt.skills.ball.go_to_ball import POLICIES
+from robobt.skills.ball.go_to_ball import GO_TO_BALL_POLICIES
 from robobt.worlds import sim_world
 from tests.match.scripted import PlainWorld, data
 from tests.registries import temporarily
@@ -61,7 +61,7 @@ def write(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Write]:
     monkeypatch.setattr(python_files, "_imported", {})
     monkeypatch.setattr(sys, "path", list(sys.path))
     before = set(sys.modules)
-    with temporarily(PLAYS), temporarily(SKILLS), temporarily(RATERS), temporarily(POLICIES):
+    with temporarily(PLAYS), temporarily(SKILLS), temporarily(RATERS), temporarily(GO_TO_BALL_POLICIES):
 
         def make(source: str = MINE, name: str = "mine.py") -> Path:
             path = tmp_path / name

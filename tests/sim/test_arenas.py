@@ -95,6 +95,6 @@ def test_the_parameters_of_one_arena_can_differ() -> None:
 
 
 def test_a_pymunk_that_keeps_bodies_otherwise_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("robobt.sim.chipmunk._PLACES", (64, 72, 112, 88, 80, 120))
+    monkeypatch.setattr("robobt.sim.chipmunk._BODY_OFFSETS", (64, 72, 112, 88, 80, 120))
     with pytest.raises(RuntimeError, match="its structures have changed"):
         Arenas(DIVISION_B, [None] * 4, preset("default"), 0.025, solver="pymunk")

@@ -9,7 +9,7 @@ import pytest
 
 from robobt.sim import Arenas, preset
 from robobt.sim.arenas import Solver
-from robobt.sim.records import MEMORY
+from robobt.sim.records import CONTACT_MEMORY
 from robobt.world import DIVISION_B
 from robobt.world.geometry import FloatArray
 
@@ -80,7 +80,7 @@ def test_it_moves_what_touches_as_pymunk_does(scene: Scene, name: str) -> None:
     made = scene(np.random.default_rng(1))
     theirs, _ = played(made, name, "pymunk", 40)
     ours, arenas = played(made, name, "compiled", 40)
-    touched = (arenas._arrays.contacts.memory.view(MEMORY)["when"][..., 0] > 0.0).any(axis=1)
+    touched = (arenas._arrays.contacts.memory.view(CONTACT_MEMORY)["when"][..., 0] > 0.0).any(axis=1)
     assert name == "grsim" or touched.mean() > 0.5, "in grsim the kernels push the ball"
     apart = np.sort(np.abs(theirs - ours).max(axis=(0, 2)))
     assert apart[:-4].max() < 1e-8

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from robobt.sim import SimWorld, preset
 from robobt.sim.hinge import take_hold, tie
 from robobt.sim.parameters import wheel_parameters
-from robobt.sim.records import BODY, DRIVE
+from robobt.sim.records import BODY, WHEEL_DRIVE
 from robobt.world import DIVISION_B, BallState, Placement, RobotCommand, RobotState
 from robobt.world.command import KickTrigger
 from tests.sim.rig import IT, ME
@@ -97,7 +97,7 @@ def test_whoever_lets_go_leaves_the_ball_to_the_other() -> None:
 def test_a_tie_conserves_momentum_and_stops_the_parting(
     one: list[float], other: list[float], x: float, y: float
 ) -> None:
-    rows, drives = np.array([one, other]), np.zeros(2, DRIVE)
+    rows, drives = np.array([one, other]), np.zeros(2, WHEEL_DRIVE)
     bodies, w = rows.view(BODY)[:, 0], wheel_parameters(preset("grsim").wheels)[()]
     ball = np.array((x, y, 0.0, 0.0, 0.0, 0.0), BODY)[()]
     for body, hinge in zip(bodies, drives["hinge"], strict=True):

@@ -9,7 +9,7 @@ import pytest
 from robobt.config.errors import ConfigError
 from robobt.match import load_scenario
 from robobt.plays import PLAYS
-from robobt.tournament.entrants import Entrant, EntrantError, Part, meeting, read_entrant
+from robobt.tournament.entrants import Entrant, EntrantError, RobotPlay, meeting, read_entrant
 from tests.tournament.made_up import drill
 
 pytestmark = pytest.mark.integration
@@ -139,7 +139,7 @@ def test_another_model_under_the_same_name_is_another_team(
     monkeypatch.chdir(tmp_path)
     model, tree = tmp_path / "mine.pt", tmp_path / "tree.yaml"
     tree.write_text("go_to_ball_and_shoot: {policy: mine.pt}\n")
-    for given in (Part(play="attack_main", params={"rater": "mine.pt"}), Part(play=str(tree))):
+    for given in (RobotPlay(play="attack_main", params={"rater": "mine.pt"}), RobotPlay(play=str(tree))):
         team = Entrant("a", "a", (given,))
         model.write_bytes(b"one")
         before = team.digest()

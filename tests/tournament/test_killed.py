@@ -13,7 +13,7 @@ from typing import Any
 import pytest
 
 from robobt.tournament.played import MAY_DIFFER, PlayedMatch
-from robobt.tournament.store import Store, StoreError
+from robobt.tournament.store import MatchStore, StoreError
 
 KILLS = 10
 COMMAND = [
@@ -35,7 +35,7 @@ def held(path: Path) -> list[PlayedMatch]:
     if not path.exists():
         return []
     try:
-        with Store(path) as store:
+        with MatchStore(path) as store:
             return store.matches()
     except StoreError:
         # Its driver is about to make it. What it held before would be missed.

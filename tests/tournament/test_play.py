@@ -169,7 +169,7 @@ def test_an_entrant_that_does_not_fit_the_scenario_is_told_before() -> None:
 
 
 def test_who_waits_for_another_program_tells_it_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(play_module, "_POLL", 0.0)
+    monkeypatch.setattr(play_module, "_CLAIM_POLL", 0.0)
     told: list[int] = []
     looks = 0
 

@@ -182,8 +182,8 @@ def test_a_planted_fault_is_caught(fault: str, monkeypatch: pytest.MonkeyPatch) 
     scope = dict(vars(module))
     exec(source.replace(old, new), scope)
     faulty = scope[function]
-    known = [known._replace(make=faulty) if known.make is sound else known for known in dispatch._KNOWN]
-    monkeypatch.setattr(dispatch, "_KNOWN", known)
+    known = [known._replace(make=faulty) if known.make is sound else known for known in dispatch._KNOWN_NODES]
+    monkeypatch.setattr(dispatch, "_KNOWN_NODES", known)
     for user in MODULES:
         if hasattr(user, function):
             monkeypatch.setattr(user, function, faulty)

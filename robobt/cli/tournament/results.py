@@ -39,12 +39,12 @@ def results(
     or the keys of 'robobt tournament run': matches, distinct, standings, encounters.
     """
     from robobt.tournament.standings import paired, standings_of
-    from robobt.tournament.store import Store
+    from robobt.tournament.store import MatchStore
 
-    with Store(store) as held:
+    with MatchStore(store) as held:
         merged = 0
         for path in merge or ():
-            with Store(path) as other:
+            with MatchStore(path) as other:
                 merged += held.merge(other)
         known, played, found = list(held.entrants()), held.played, held.matches()
     for name in [*(entrant or []), *(compare or ()), *([lost_by] if lost_by else [])]:

@@ -77,7 +77,7 @@ class Confirmation:
 
 
 @dataclass(frozen=True)
-class Running:
+class SweepConditions:
     """How the matches are played, and where they are kept."""
 
     out: OutOption = None
@@ -105,7 +105,7 @@ def sweep(
     *,
     tried: Tried,
     confirmation: Confirmation,
-    running: Running,
+    running: SweepConditions,
     changes: Changes,
     refereeing: Refereeing,
     as_json: Json = False,
@@ -182,7 +182,7 @@ def sweep(
 
 
 @dataclass
-class _Found:
+class _SweepOutcome:
     """What a search and the test of its best candidate found.
 
     Attributes:
@@ -200,7 +200,7 @@ class _Found:
     test: RunningTest | None = None
 
 
-def _searched(asked: Sweep, confirmation: Confirmation, running: Running) -> _Found:
+def _searched(asked: Sweep, confirmation: Confirmation, running: SweepConditions) -> _SweepOutcome:
     """Search, and test the best candidate unless that is left out."""
     from robobt.tournament.sweeps.search import search
     from robobt.tournament.sweeps.sweep import confirm
@@ -218,7 +218,7 @@ def _searched(asked: Sweep, confirmation: Confirmation, running: Running) -> _Fo
                     progress.name(f"sweep, best {found.best.score:.3f}")
 
             swept = search(asked, store, workers, on_progress, tell_waiting, kept)
-        found = _Found(swept, list(swept.matches), dict(swept.failed), swept.interrupted)
+        found = _SweepOutcome(swept, list(swept.matches), dict(swept.failed), swept.interrupted)
         if swept.best is None or not _is_better(swept.best) or not rounds or found.interrupted:
             return found
         with Progress("confirm", 2 * rounds) as progress:
@@ -244,7 +244,7 @@ def _is_better(best: Candidate | None) -> bool:
     return best is not None and (best.score or 0.0) > 0.5
 
 
-def _warn_of(found: _Found, out: Path | None) -> None:
+def _warn_of(found: _SweepOutcome, out: Path | None) -> None:
     """Warn of what went wrong: matches, trees, an early end."""
     for fixture, problem in found.failed.items():
         warn(f"{fixture} could not be played: {problem}")

@@ -55,7 +55,7 @@ if TYPE_CHECKING:
     from robobt.tournament.sequential import RunningTest, SequentialTest
     from robobt.tournament.standings import Standings
 
-_ROUNDS, _MOST_ROUNDS = 10, 5000
+_DEFAULT_ROUNDS, _MOST_ROUNDS = 10, 5000
 """Rounds by default: of a tournament, and of a sequential test."""
 
 
@@ -94,7 +94,7 @@ class Test:
 
 
 @dataclass(frozen=True)
-class Kept:
+class KeptMatches:
     """What is kept of the matches."""
 
     out: OutOption = None
@@ -129,7 +129,7 @@ class Kept:
 
 
 @dataclass(frozen=True)
-class Running:
+class MatchConditions:
     """How the matches are played."""
 
     seed: Seed = None
@@ -157,15 +157,15 @@ def run(
         int | None,
         option(
             "--rounds",
-            f" in each pairing; by default {_ROUNDS}, with --sprt at most {_MOST_ROUNDS}",
+            f" in each pairing; by default {_DEFAULT_ROUNDS}, with --sprt at most {_MOST_ROUNDS}",
             min=1,
             max=100_000,
         ),
     ] = None,
     *,
     test: Test,
-    kept: Kept,
-    running: Running,
+    kept: KeptMatches,
+    running: MatchConditions,
     changes: Changes,
     refereeing: Refereeing,
     as_json: Json = False,
@@ -200,7 +200,7 @@ def run(
     plan = Plan(
         base,
         teams,
-        rounds or (_ROUNDS if asked is None else _MOST_ROUNDS),
+        rounds or (_DEFAULT_ROUNDS if asked is None else _MOST_ROUNDS),
         base.seed if running.seed is None else running.seed,
         None if against is None else teams[texts.index(against)].name,
         referees,

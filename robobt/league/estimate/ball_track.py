@@ -34,7 +34,7 @@ class BallMotion:
 _RESTING_NOISE, _ROLLING_NOISE = 0.05, 0.25
 """Acceleration noise of a free ball that rests or rolls: carpets differ in how they slow it [m/s^2]."""
 
-_ROLLS = 0.1
+_ROLLING_SPEED = 0.1
 """Speed below which a ball rolls [m/s]."""
 
 _PUSHED_NOISE = 6.0
@@ -46,22 +46,22 @@ _KICK = 8.0
 _SURPRISE = 49.0
 """Squared innovation, in variances, that is not noise."""
 
-_CARRIED = 0.2
+_CARRIED_SPREAD = 0.2
 """Standard deviation of a carried ball's velocity relative to its robot [m/s]."""
 
 _FADING = 0.95
 """Share of a misfit that remains one detection later."""
 
-_SHORTEST, _LONGEST = 0.005, 0.05
+_SHORTEST_STEP, _LONGEST_STEP = 0.005, 0.05
 """Time between two detections from which a kick's velocity is inferred [s]."""
 
-_OFFSET = 0.03
+_BALL_OFFSET_SPREAD = 0.03
 """Standard deviation of a camera's offset about its mean [m]."""
 
 _RELEARNT = 5
 """Number of surprising detections after which a camera, contradicted by others, has another offset."""
 
-_SETTLING = 4
+_SETTLING_DETECTIONS = 4
 """Detections after a kick during which its speed is still being determined."""
 
 
@@ -96,7 +96,7 @@ class BallTrack:
     def restart(self, x: float, y: float, time: float, camera: int | None = None) -> None:
         """Restart the track at rest, at a camera's detection or where the ball was put."""
         self.time = time
-        self._covariance = OffsetCovariance(_KICK**2, _OFFSET, self._means)
+        self._covariance = OffsetCovariance(_KICK**2, _BALL_OFFSET_SPREAD, self._means)
         if camera is not None:
             dx, dy = self._covariance.begin(camera, time, self._r)
             x, y = x - dx, y - dy
@@ -110,7 +110,7 @@ class BallTrack:
         self._sliding, self._rolling = replace(motion), replace(motion, rolls_at=inf)
         self._misfit_sliding = self._misfit_rolling = 0.0
         self._mismatch = Mismatch()
-        self._settling, self._kicked = _SETTLING, kicked
+        self._settling, self._kicked = _SETTLING_DETECTIONS, kicked
 
     @property
     def motion(self) -> BallMotion:
@@ -140,7 +140,7 @@ class BallTrack:
             for motion in (self._sliding, self._rolling):
                 motion.x += dx
                 motion.y += dy
-        noise = _RESTING_NOISE if hypot(self.motion.vx, self.motion.vy) < _ROLLS else _ROLLING_NOISE
+        noise = _RESTING_NOISE if hypot(self.motion.vx, self.motion.vy) < _ROLLING_SPEED else _ROLLING_NOISE
         noise = _PUSHED_NOISE if near_robot else noise + self._mismatch.level * _PUSHED_NOISE
         self._covariance.predict(noise, dt)
         self.time, self._last_step = time, dt
@@ -148,7 +148,7 @@ class BallTrack:
     def carry(self, motion: BallMotion, time: float) -> None:
         """Set the motion of a ball that a robot carries."""
         self._rolling, self._sliding = replace(motion, rolls_at=inf), replace(motion, rolls_at=inf)
-        self._covariance.widen(_CARRIED**2)
+        self._covariance.widen(_CARRIED_SPREAD**2)
         self.time = max(self.time, time)
 
     def place(self, x: float, y: float, camera: int) -> tuple[float, float]:
@@ -192,7 +192,7 @@ class BallTrack:
             p.jump(dx * dx + dy * dy, _KICK**2)
             self._split(m, self.time - self._last_step / 2)
             s = p.detection_variance(camera) + self._r
-            if kickable and known and _SHORTEST <= self._last_step <= _LONGEST:
+            if kickable and known and _SHORTEST_STEP <= self._last_step <= _LONGEST_STEP:
                 # Goalkeepers cannot wait for the next detection to learn the ball's speed.
                 p.move_since(self._last_step, s)
         else:

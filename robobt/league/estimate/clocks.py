@@ -13,7 +13,7 @@ from math import inf, sqrt
 from robobt.league.estimate.kalman import Covariance, Mismatch
 from robobt.league.wire.vision import CameraFrame
 
-_BLOCK = 0.0999
+_BLOCK_TIME = 0.0999
 """Duration of a block: packets sent within it compete for the least delay [s of the field].
 
 Cameras send 6 or 10 frames in 0.1 s; with slightly less, rounding does not decide the next frame's block.
@@ -22,19 +22,19 @@ Cameras send 6 or 10 frames in 0.1 s; with slightly less, rounding does not deci
 _LONGEST_BLOCK = 0.0999
 """Duration of a block of a slow field, by arrival times [s]."""
 
-_FEWEST = 4
+_FEWEST_BLOCKS = 4
 """Number of blocks after which a block can be odd, and the rate counts as measured."""
 
-_MEMORY = 20
+_REMEMBERED_BLOCKS = 20
 """Number of blocks whose worst delays are kept."""
 
-_SLOWEST, _FASTEST = 0.05, 20.0
+_SLOWEST_CLOCK, _FASTEST_CLOCK = 0.05, 20.0
 """Rates beyond these are not believed [s of the field per s]."""
 
 _RATE_ERROR = 1.0
 """Standard deviation of the initial rate, relative to it."""
 
-_DRIFT, _TURN = 0.03, 0.3
+_RATE_DRIFT, _RATE_CHANGE = 0.03, 0.3
 """Relative drift of a rate, normally and when it evidently changes [1/s]."""
 
 _LEAST_SPREAD, _SPREAD = 0.0003, 0.35
@@ -43,10 +43,10 @@ _LEAST_SPREAD, _SPREAD = 0.0003, 0.35
 _FIRST_SPREAD = 0.001
 """Standard deviation of a block's least delay while nothing is known [s]."""
 
-_SMOOTHING = 0.2
+_DELAY_SMOOTHING = 0.2
 """Weight of the newest block in the mean delay."""
 
-_STEP, _STEP_SPREADS = 0.012, 6.0
+_ODD_DELAY, _ODD_DELAY_SPREADS = 0.012, 6.0
 """A block is odd if it is off by more than this [s] and by more than this many standard deviations."""
 
 _ODD, _ODD_TIME = 2, 0.5
@@ -58,13 +58,13 @@ _STRETCH = 2.0
 _IN_STEP = 0.05
 """Clocks closer than this count as equal, because packets' delays differ by as much [s]."""
 
-_JUMP = 0.5
+_CLOCK_JUMP = 0.5
 """Clocks do not jump ahead this far; a single packet that does so has a wrong timestamp [s]."""
 
-_CONFIRMATIONS = 3
+_JUMP_CONFIRMATIONS = 3
 """Consecutive packets after which a clock that jumped ahead is believed."""
 
-_LATE, _SET_BACK = 0.2, 0.3
+_HELD_UP_DELAY, _SET_BACK = 0.2, 0.3
 """Packets later than this are delayed [s]; if that lasts longer than this, the clock was set back [s]."""
 
 
@@ -85,7 +85,7 @@ class _Block:
 
     def takes(self, arrived: float, sent: float) -> bool:
         """Return whether a packet with these times belongs here; a pause ends a block."""
-        return 0.0 <= sent - self.first_sent < _BLOCK and arrived - self.first_arrived < _LONGEST_BLOCK
+        return 0.0 <= sent - self.first_sent < _BLOCK_TIME and arrived - self.first_arrived < _LONGEST_BLOCK
 
     @property
     def mean_delay(self) -> float:
@@ -120,7 +120,7 @@ class FieldClock:
         self._at = self._sent = 0.0
         self._covariance = Covariance(1.0, 0.0, (_RATE_ERROR * self.rate) ** 2)
         self._mismatch = Mismatch()
-        self._late: deque[float] = deque(maxlen=_MEMORY)
+        self._late: deque[float] = deque(maxlen=_REMEMBERED_BLOCKS)
         self._block: _Block | None = None
         self._worst = 0.0
         self._odd: list[_Block] = []
@@ -155,24 +155,24 @@ class FieldClock:
 
     def _close(self, block: _Block) -> None:
         """Use a block that is complete."""
-        if self._blocks < _FEWEST or abs(self._miss(block)) < self._tolerance():
+        if self._blocks < _FEWEST_BLOCKS or abs(self._miss(block)) < self._tolerance():
             self._odd.clear()
             self._use(block)
-            if self._blocks > _FEWEST:
+            if self._blocks > _FEWEST_BLOCKS:
                 self._late.append(self._worst)
             return
         odd = self._odd
         odd.append(block)
         # The first one's time counts; a flood must not pile up here.
-        del odd[1:-_FEWEST]
+        del odd[1:-_FEWEST_BLOCKS]
         last = odd[-_ODD:]
         agree = all(abs(self._miss(one) - self._miss(block)) < self._tolerance() for one in last)
         # Packets that were held back and arrive all at once carry no information on the delay.
-        apart = block.arrived - last[0].arrived > min(_BLOCK / self.rate, _LONGEST_BLOCK) / 2
+        apart = block.arrived - last[0].arrived > min(_BLOCK_TIME / self.rate, _LONGEST_BLOCK) / 2
         if len(last) == _ODD and agree and apart:
             self._restart(last, _RATE_ERROR / 10)
         elif block.arrived - odd[0].arrived > _ODD_TIME / self.rate:
-            self._restart(odd[-_FEWEST:], _RATE_ERROR)
+            self._restart(odd[-_FEWEST_BLOCKS:], _RATE_ERROR)
 
     def _restart(self, blocks: list[_Block], error: float) -> None:
         """Restart the estimate from some blocks, with the rate known to a relative error."""
@@ -187,12 +187,12 @@ class FieldClock:
         self._blocks += 1
         if self.settled:
             # Earlier, the delays within a block cannot be separated from the rate.
-            self._delay += _SMOOTHING * (block.mean_delay - self._delay)
+            self._delay += _DELAY_SMOOTHING * (block.mean_delay - self._delay)
         # The least of n exponentially distributed delays is on average the mean divided by n.
         likely = self._delay / max(1, block.packets)
         spread = max(_LEAST_SPREAD, _SPREAD * self._delay) if self.settled else _FIRST_SPREAD
         p, elapsed = self._covariance, max(0.0, block.arrived - self._at)
-        p.predict((_DRIFT + self._mismatch.level * _TURN) * self.rate, elapsed)
+        p.predict((_RATE_DRIFT + self._mismatch.level * _RATE_CHANGE) * self.rate, elapsed)
         miss = self._miss(block) + likely
         self._sent += elapsed * self.rate
         self._at += elapsed
@@ -204,8 +204,8 @@ class FieldClock:
         p.correct(k, g)
         self._mismatch.update(miss / sqrt(s))
         self._sent += k * miss
-        self.rate = min(_FASTEST, max(_SLOWEST, self.rate + g * miss))
-        self.settled = self.settled or self._blocks >= _FEWEST
+        self.rate = min(_FASTEST_CLOCK, max(_SLOWEST_CLOCK, self.rate + g * miss))
+        self.settled = self.settled or self._blocks >= _FEWEST_BLOCKS
 
     def _miss(self, block: _Block) -> float:
         """Return how much later than expected the promptest packet of a block was sent [s of the field]."""
@@ -213,7 +213,7 @@ class FieldClock:
 
     def _tolerance(self) -> float:
         """Return how far a block may be off [s of the field]."""
-        return max(_STEP, _STEP_SPREADS * _SPREAD * self._delay)
+        return max(_ODD_DELAY, _ODD_DELAY_SPREADS * _SPREAD * self._delay)
 
 
 @dataclass(slots=True)
@@ -256,10 +256,10 @@ class CameraClocks:
         known = self._offsets.get(camera)
         if known is None:
             known = self._offsets[camera] = _Offset(arrived, offset, offset)
-        elif offset < known.now - _JUMP and known.odd + 1 < _CONFIRMATIONS:
+        elif offset < known.now - _CLOCK_JUMP and known.odd + 1 < _JUMP_CONFIRMATIONS:
             known.odd += 1
             return 0.0
-        elif offset <= known.now + _LATE:
+        elif offset <= known.now + _HELD_UP_DELAY:
             known.late_since = inf
         elif arrived - known.late_since > _SET_BACK:
             known = self._offsets[camera] = _Offset(arrived, offset, offset)

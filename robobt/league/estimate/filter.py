@@ -47,7 +47,7 @@ _RADIUS_95 = 2.448
 _MIN_CONFIDENCE = 0.1
 """Detections of lower confidence are ignored."""
 
-_CONFIRMATIONS = 3
+_OUTLIER_CONFIRMATIONS = 3
 """Detections at about one place, or frames of about one time, after which an outlier is believed."""
 
 _ROBOT_GATE, _BALL_GATE = 0.15, 0.12
@@ -68,10 +68,10 @@ _COMMAND_MEMORY = 0.5
 _JUMP_BACK, _JUMP_AHEAD = 0.5, 5.0
 """A source whose capture times jump further was restarted [s]."""
 
-_LATE = 0.002
+_CAMERA_LATENESS = 0.002
 """A camera whose frame is this much older than the newest is late [s]."""
 
-_GAP = 0.5
+_CAPTURE_GAP = 0.5
 """Capture times further ahead need confirmation by more frames [s]."""
 
 
@@ -123,7 +123,7 @@ class VisionFilter:
         self._sensing = RobotSensing(*self._robot_noises)
         # One mean for balls and robots keeps a ball beside its robot where different cameras see the two.
         self._offsets = self._sensing.offsets
-        self._ball_rivals = Rivals(_CONFIRMATIONS, _BALL_GATE, _MAX_BALL_SPEED)
+        self._ball_rivals = Rivals(_OUTLIER_CONFIRMATIONS, _BALL_GATE, _MAX_BALL_SPEED)
         self._robot_rivals: dict[RobotId, Rivals] = {}
         self._sent: dict[RobotId, SentCommands] = {}
 
@@ -143,7 +143,7 @@ class VisionFilter:
             self._ball_seen = self.captured
             self.possession.holds = []
             self._flights.clear()
-            self._ball_rivals = Rivals(_CONFIRMATIONS, _BALL_GATE, _MAX_BALL_SPEED)
+            self._ball_rivals = Rivals(_OUTLIER_CONFIRMATIONS, _BALL_GATE, _MAX_BALL_SPEED)
 
     def add(self, frame: CameraFrame, now: float | None = None) -> bool:
         """Use a camera's frame; return False for a duplicate, a late frame or an unconfirmed time.
@@ -152,7 +152,7 @@ class VisionFilter:
         a source that went on while nobody listened.
         """
         time = frame.captured
-        if self.captured is not None and not -_JUMP_BACK < time - self.captured < _GAP:
+        if self.captured is not None and not -_JUMP_BACK < time - self.captured < _CAPTURE_GAP:
             if not self._confirmed_time(time):
                 return False
             if not -_JUMP_BACK < time - self.captured < _JUMP_AHEAD:
@@ -231,15 +231,15 @@ class VisionFilter:
     def _confirmed_time(self, time: float) -> bool:
         """Return whether enough consecutive frames had about this odd capture time."""
         before, count = self._odd_time
-        count = count + 1 if abs(time - before) < _GAP else 1
+        count = count + 1 if abs(time - before) < _CAPTURE_GAP else 1
         self._odd_time = (time, count)
-        return count >= _CONFIRMATIONS
+        return count >= _OUTLIER_CONFIRMATIONS
 
     def _add_robot(self, robot: RobotId, detections: list[RobotDetection], time: float, camera: int) -> None:
         limits = self._limits.get(robot, self.settings.limits)
         rivals = self._robot_rivals.get(robot)
         if rivals is None:
-            rivals = self._robot_rivals[robot] = Rivals(_CONFIRMATIONS, _ROBOT_GATE, limits.max_speed)
+            rivals = self._robot_rivals[robot] = Rivals(_OUTLIER_CONFIRMATIONS, _ROBOT_GATE, limits.max_speed)
         track = self._robots.get(robot)
         if track is not None:
             detections = self._correct_robot(track, rivals, detections, time, camera)
@@ -339,7 +339,7 @@ class VisionFilter:
         if own is None:
             return None
         # It may have been kicked since a late camera saw it.
-        if late > -_LATE or not track.settling:
+        if late > -_CAMERA_LATENESS or not track.settling:
             track.correct(own.x - m.vx * late, own.y - m.vy * late, camera, kickable)
         if self._flights.hop is None:
             track.teach()

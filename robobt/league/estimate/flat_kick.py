@@ -8,7 +8,7 @@ from robobt.sim.settings import BallSettings
 from robobt.world.ball_model import way_in
 from robobt.world.geometry import FloatArray
 
-_ROUNDS = 4
+_SPEED_REFINEMENTS = 4
 """Improvements of the speed, each by the slope of the misfit."""
 
 
@@ -59,7 +59,7 @@ def _sliding(along: FloatArray, t: FloatArray, gap: float, ball: BallSettings) -
         return apart - float(apart.mean())
 
     speed = max(float((along[-1] - along[0]) / (t[-1] - t[0])), 0.1)
-    for _ in range(_ROUNDS):
+    for _ in range(_SPEED_REFINEMENTS):
         now = off(speed)
         slope = (off(speed + 1e-3) - now) / 1e-3
         speed = max(speed - float(slope @ now) / max(float(slope @ slope), 1e-12), 0.1)

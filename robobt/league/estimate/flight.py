@@ -30,10 +30,10 @@ from robobt.world.ball_model import GRAVITY
 from robobt.world.geometry import FloatArray
 from robobt.world.state import BALL_RADIUS
 
-_FEWEST = 6
+_FEWEST_DETECTIONS = 6
 """Number of detections from which a chip can be distinguished."""
 
-_LONGEST = 0.9
+_CHIP_DEADLINE = 0.9
 """A kick not recognised as a chip within this time counts as flat [s]."""
 
 _NOT_FLAT = 9.0
@@ -57,7 +57,7 @@ _LEAST_RISE = 1.0
 _START = (0.01, 0.01, 20.0, 20.0, 0.004, 20.0)
 """Prior standard deviations of a launch: place, velocity, height [m, m/s]."""
 
-_ANYWHERE = (1.0, 1.0, 20.0, 20.0, 1.0, 20.0)
+_UNKNOWN_KICK_SPREADS = (1.0, 1.0, 20.0, 20.0, 1.0, 20.0)
 """Prior standard deviations of a launch with an unknown kick time."""
 
 _HIGHEST = 2.0
@@ -72,25 +72,25 @@ _BACK = 1e-6
 _HOP = (0.05, 0.05, 0.3, 0.3, 0.02, 0.3)
 """Prior standard deviations of a hop, from the previous hop."""
 
-_LAUNCHES, _UNSEEN = 4, 6
+_LAUNCHES, _INTERVALS_BEFORE = 4, 6
 """Number of launch times tried per interval between two detections, and number of detections before the kick
 from which the ball may have been launched."""
 
-_SETTLED = 15
+_SETTLED_FLIGHT_DETECTIONS = 15
 """Number of detections in flight after which the interval of the launch is known."""
 
-_LOST = 0.1
+_LOST_DISTANCE = 0.1
 """A ball detected this far from the prediction is not in this flight [m]."""
 
 _LOST_FOR = 3
 """Number of such detections in a row that end a flight."""
 
-_MEMORY = 12
+_REMEMBERED_DETECTIONS = 12
 """Number of detections kept before a kick."""
 
 
 @dataclass(slots=True)
-class _Seen:
+class _BallDetection:
     """A detection: its time, its place, and its shift per metre of height."""
 
     time: float
@@ -117,10 +117,10 @@ class FlightWatch:
         self.hop: Hop | None = None
         self.landed: BallMotion | None = None
         self._ball, self._variance, self._cameras = settings, noise * noise, cameras
-        self._recent: deque[_Seen] = deque(maxlen=_MEMORY)
-        self._before: _Seen | None = None
-        self._last: list[_Seen] = []
-        self._since: list[_Seen] = []
+        self._recent: deque[_BallDetection] = deque(maxlen=_REMEMBERED_DETECTIONS)
+        self._before: _BallDetection | None = None
+        self._last: list[_BallDetection] = []
+        self._since: list[_BallDetection] = []
         self._expected: Hop | None = None
         self._unknown = False
         self._lost = 0
@@ -156,7 +156,7 @@ class FlightWatch:
         if place is None:
             return
         height = place.z - BALL_RADIUS
-        seen = _Seen(time, x, y, (x - place.x) / height, (y - place.y) / height)
+        seen = _BallDetection(time, x, y, (x - place.x) / height, (y - place.y) / height)
         if kick is not None:
             self._begin(kick)
         self._recent.append(seen)
@@ -176,7 +176,7 @@ class FlightWatch:
         earlier = [seen for seen in self._recent if seen.time < kick.time - 1e-6]
         self._before, self._unknown = (earlier[-1] if earlier else None), False
         # A ball chipped towards its camera rises unseen at first.
-        self._last = earlier[-_UNSEEN:]
+        self._last = earlier[-_INTERVALS_BEFORE:]
         self._since = [seen for seen in self._recent if self._before and seen.time > self._before.time]
 
     def _notice(self) -> None:
@@ -193,12 +193,12 @@ class FlightWatch:
             self._before, self._unknown = first, True
             self._since = [seen for seen in self._recent if seen.time > first.time]
 
-    def _judge(self, before: _Seen) -> None:
+    def _judge(self, before: _BallDetection) -> None:
         """Decide whether the detections since the kick show a chip."""
-        if self._since[-1].time - before.time > _LONGEST:
+        if self._since[-1].time - before.time > _CHIP_DEADLINE:
             self._before = None
             return
-        if len(self._since) < (2 * _FEWEST if self._unknown else _FEWEST):
+        if len(self._since) < (2 * _FEWEST_DETECTIONS if self._unknown else _FEWEST_DETECTIONS):
             return
         times, places = _columns(self._since)
         flat = flat_misfit(times - before.time, places, self._ball) / self._variance
@@ -219,10 +219,10 @@ class FlightWatch:
         if can_be and misfit < min(_BETTER * flat, _FITS * rest):
             self.hop, self._lost, self._expected = hop, 0, None
 
-    def _launch(self, before: _Seen) -> tuple[Hop, float]:
+    def _launch(self, before: _BallDetection) -> tuple[Hop, float]:
         """Return the chip that fits best, and its misfit in variances."""
         if self._unknown:
-            found, misfit = self._fit(self._since, before.time, _still(before), _ANYWHERE)
+            found, misfit = self._fit(self._since, before.time, _still(before), _UNKNOWN_KICK_SPREADS)
             return _hop(before.time, found, 0), misfit
         newest = self._since[-1]
         dx, dy = newest.x - before.x, newest.y - before.y
@@ -237,13 +237,13 @@ class FlightWatch:
                 found, misfit = self._fit(flight, start, _still(last), _START, lean)
                 tried.append((misfit / (2 * len(flight) - 5) * rest, start, found, last, flight))
         misfit, start, found, last, flight = min(tried, key=lambda each: each[0])
-        if self.hop is not None and len(flight) >= _SETTLED:
+        if self.hop is not None and len(flight) >= _SETTLED_FLIGHT_DETECTIONS:
             self._last, self._since = [last], flight
         return _hop(start, found, 0), misfit
 
     def _fit(
         self,
-        flight: list[_Seen],
+        flight: list[_BallDetection],
         start: float,
         mean: FloatArray,
         about: tuple[float, ...],
@@ -271,7 +271,7 @@ class FlightWatch:
         off = rows @ found - right
         return found, float(off @ off) / self._variance
 
-    def _follow(self, hop: Hop, seen: _Seen) -> None:
+    def _follow(self, hop: Hop, seen: _BallDetection) -> None:
         """Improve the flight by a detection, up to where the ball rolls or is lost."""
         while seen.time > hop.time + hop.lasts():
             hop = self._expected = hop.next(self._ball)
@@ -281,7 +281,7 @@ class FlightWatch:
                 return
         ball = hop.at(seen.time)
         astray = hypot(ball.x + seen.ax * ball.z - seen.x, ball.y + seen.ay * ball.z - seen.y)
-        self._lost = self._lost + 1 if astray > _LOST else 0
+        self._lost = self._lost + 1 if astray > _LOST_DISTANCE else 0
         if self._lost >= _LOST_FOR:
             self.hop = None
             return
@@ -299,17 +299,17 @@ class FlightWatch:
         self.hop = hop
 
 
-def _left(before: _Seen, seen: _Seen) -> bool:
+def _left(before: _BallDetection, seen: _BallDetection) -> bool:
     """Return whether a ball was later seen elsewhere; otherwise it has no direction."""
     return seen.time > before.time and hypot(seen.x - before.x, seen.y - before.y) >= _BACK
 
 
-def _columns(flight: list[_Seen]) -> tuple[FloatArray, FloatArray]:
+def _columns(flight: list[_BallDetection]) -> tuple[FloatArray, FloatArray]:
     """Return times (n,) and places (n, 2) of detections."""
     return np.array([seen.time for seen in flight]), np.array([(seen.x, seen.y) for seen in flight])
 
 
-def _still(seen: _Seen) -> FloatArray:
+def _still(seen: _BallDetection) -> FloatArray:
     """Return x, y, vx, vy, z, vz of a ball that lies where it is seen."""
     return np.array([seen.x, seen.y, 0.0, 0.0, 0.0, 0.0])
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-_MEMORY = 0.25
+_NEWEST_WEIGHT = 0.25
 """Weight of the newest innovation in the running mean that separates a manoeuvre from noise."""
 
 _SUSPECT = 9.0
@@ -13,7 +13,7 @@ _SUSPECT = 9.0
 _CERTAIN = 27.0
 """Squared running mean, in variances, from which on the model is rejected."""
 
-_MEAN_VARIANCE = _MEMORY / (2.0 - _MEMORY)
+_MEAN_VARIANCE = _NEWEST_WEIGHT / (2.0 - _NEWEST_WEIGHT)
 """Variance of the running mean of white innovations of unit variance."""
 
 
@@ -58,7 +58,9 @@ class Mismatch:
     def update(self, *innovations: float) -> None:
         """Add the innovation of each axis, in units of its expected standard deviation."""
         means = self._means or [0.0] * len(innovations)
-        self._means = [mean + _MEMORY * (new - mean) for mean, new in zip(means, innovations, strict=True)]
+        self._means = [
+            mean + _NEWEST_WEIGHT * (new - mean) for mean, new in zip(means, innovations, strict=True)
+        ]
         square = sum([mean**2 for mean in self._means]) / len(self._means)
         level = (square / _MEAN_VARIANCE - _SUSPECT) / (_CERTAIN - _SUSPECT)
         self.level = min(1.0, max(0.0, level))

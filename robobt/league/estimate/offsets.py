@@ -16,13 +16,13 @@ _DETECTIONS_KNOWN = 5
 _FORGOTTEN = 2.0
 """A camera that has not seen the object for this long is dropped from its estimate [s]."""
 
-_ANYWHERE = 1.0
+_UNKNOWN_POSITION_VARIANCE = 1.0
 """Variance of a position that is not known at all [m^2 or rad^2]."""
 
-_TOGETHER = 0.1
+_JOINT_SIGHT_TIME = 0.1
 """Cameras that saw the object within this time see it together [s]."""
 
-_DRIFT = 0.02
+_OFFSET_GROWTH = 0.02
 """Growth of an offset's variance, as a share of its first one [1/s]: it changes with the place."""
 
 _LEARNING_EVERY = 7
@@ -75,7 +75,7 @@ class MeanOffsets:
 
 
 @dataclass(slots=True)
-class _Camera:
+class _CameraOffset:
     """A camera's offset from the object's position, one entry per axis, and when and how often it saw it."""
 
     offset: list[float]
@@ -100,8 +100,8 @@ class OffsetCovariance:
 
     def __init__(self, velocity_variance: float, spread: float, means: MeanOffsets) -> None:
         # Rows and columns: position, velocity, then the cameras but the first, in their order.
-        self._matrix = [[_ANYWHERE, 0.0], [0.0, velocity_variance]]
-        self._cameras: dict[int, _Camera] = {}
+        self._matrix = [[_UNKNOWN_POSITION_VARIANCE, 0.0], [0.0, velocity_variance]]
+        self._cameras: dict[int, _CameraOffset] = {}
         self._spread, self._means = 2.0 * spread * spread, means
         self.several = False
         self._detections = 0
@@ -149,7 +149,7 @@ class OffsetCovariance:
             position[i] += dt * velocity[i]
             m[i][0] = position[i]
             if self.several:
-                m[i][i] += _DRIFT * self._spread * dt
+                m[i][i] += _OFFSET_GROWTH * self._spread * dt
 
     def settle(self, dt: float) -> list[float] | None:
         """Return what to add to the position, one entry per axis, after ``dt`` seconds; None for nothing.
@@ -244,7 +244,7 @@ class OffsetCovariance:
         """Drop cameras that no longer see the object, and find out whether several do."""
         for other in [other for other, each in self._cameras.items() if each.seen < time - _FORGOTTEN]:
             self._drop(other)
-        self.several = sum(each.seen > time - _TOGETHER for each in self._cameras.values()) > 1
+        self.several = sum(each.seen > time - _JOINT_SIGHT_TIME for each in self._cameras.values()) > 1
 
     def teach(self) -> None:
         """Let the cameras' means learn from this object's offsets, now and then."""
@@ -257,8 +257,8 @@ class OffsetCovariance:
         """Return a camera's row; 1 for the first, whose offset is not estimated."""
         return 1 + list(self._cameras).index(camera)
 
-    def _add(self, camera: int, time: float) -> _Camera:
-        added = _Camera(self._means.of(camera), time)
+    def _add(self, camera: int, time: float) -> _CameraOffset:
+        added = _CameraOffset(self._means.of(camera), time)
         if self._cameras:
             for row in self._matrix:
                 row.append(0.0)

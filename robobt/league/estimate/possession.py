@@ -21,7 +21,7 @@ _HOLD_SLACK, _HOLD_SPEED = 0.012, 0.5
 _PARTED = 0.03
 """Robots that hold one ball have parted when it would be this far apart from itself: one has lost it [m]."""
 
-_TOUCH_GAP = 0.006
+_SEEN_TOUCH_GAP = 0.006
 """Gap between hull and ball that counts as a touch [m]."""
 
 _PUSH_GAP = 0.05
@@ -32,7 +32,7 @@ _FEEDBACK_REACH = 0.05
 
 
 @dataclass(slots=True)
-class Hold:
+class CarriedBall:
     """A robot that carries the ball, and the ball's place in that robot's frame [m]."""
 
     robot: RobotId
@@ -57,14 +57,14 @@ class Possession:
 
     def __init__(self, body: BodySettings) -> None:
         self._body = body
-        self.holds: list[Hold] = []
+        self.holds: list[CarriedBall] = []
         self.last_touch: RobotId | None = None
         self.feedback: dict[RobotId, bool] = {}
 
     def update(self, ball: BallMotion, motions: Mapping[RobotId, RobotMotion]) -> None:
         """Update possession from the estimates at the ball's last detection."""
         self.holds = []
-        reach = ROBOT_RADIUS + BALL_RADIUS + _TOUCH_GAP
+        reach = ROBOT_RADIUS + BALL_RADIUS + _SEEN_TOUCH_GAP
         for robot, m in motions.items():
             if hypot(ball.x - m.x, ball.y - m.y) > reach:
                 continue
@@ -74,7 +74,7 @@ class Possession:
             vx, vy = m.vx - m.omega * (ball.y - m.y), m.vy + m.omega * (ball.x - m.x)
             slow = hypot(ball.vx - vx, ball.vy - vy) < _HOLD_SPEED
             if slow and self._in_mouth(ahead, aside, _HOLD_SLACK):
-                self.holds.append(Hold(robot, ahead, aside))
+                self.holds.append(CarriedBall(robot, ahead, aside))
 
     def carried(self, motions: Mapping[RobotId, RobotMotion]) -> BallMotion | None:
         """Return the motion of the ball given the robots' motions; None if no robot carries it.

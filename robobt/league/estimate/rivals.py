@@ -13,28 +13,28 @@ from math import exp, hypot, inf
 from operator import itemgetter
 from typing import Protocol, TypeVar
 
-_MEMORY = 1.0
+_EVIDENCE_TIME = 1.0
 """Time constant with which evidence fades, and after which an unseen place is forgotten [s]."""
 
-_MARGIN = 1.25
+_EVIDENCE_RATIO = 1.25
 """A rival needs this many times the evidence of the track."""
 
-_ENOUGH = 2.0
+_EVIDENCE_ALONE = 2.0
 """Sum of confidences that a rival needs where the track is no longer seen."""
 
-_SURE = 0.8
+_SURE_SHARE = 0.8
 """A detection with less than this share of another's confidence is less sure."""
 
 _WEAK = 0.5
 """A detection with less than this share of the track's usual confidence is weak."""
 
-_SMOOTHING = 0.05
+_CONFIDENCE_SMOOTHING = 0.05
 """Weight of the newest detection in the track's usual confidence."""
 
-_LONGEST_GAP = 0.035
+_LONGEST_REACH_TIME = 0.035
 """An object that was not seen for longer is expected no further away than after this time [s]."""
 
-_MOST = 16
+_MOST_RIVALS = 16
 """Number of rivals remembered; a flood of false detections must not pile up."""
 
 
@@ -58,13 +58,16 @@ class Evidence:
     def add(self, camera: int, confidence: float, time: float) -> None:
         """Add a detection of one camera at a time [s]."""
         last, value = self._sums.get(camera, (time, 0.0))
-        self._sums[camera] = (max(time, last), value * exp(-max(0.0, time - last) / _MEMORY) + confidence)
+        self._sums[camera] = (
+            max(time, last),
+            value * exp(-max(0.0, time - last) / _EVIDENCE_TIME) + confidence,
+        )
 
     def at(self, time: float) -> float:
         """Return the sum of confidences, faded with age, of the camera with the largest sum."""
         # Not the sum over cameras: a spare ball where two overlap is no surer than the one in play.
         return max(
-            (value * exp(-max(0.0, time - last) / _MEMORY) for last, value in self._sums.values()),
+            (value * exp(-max(0.0, time - last) / _EVIDENCE_TIME) for last, value in self._sums.values()),
             default=0.0,
         )
 
@@ -103,7 +106,7 @@ class Rivals:
         """Take in a detection of the track [s]."""
         self._forget(time)
         self._evidence.add(camera, confidence, time)
-        self._usual += _SMOOTHING * (confidence - self._usual)
+        self._usual += _CONFIDENCE_SMOOTHING * (confidence - self._usual)
         self._saw_track(time)
 
     def own(self, seen: Sequence[tuple[float, Seen]], gate: float, track_seen: float) -> Seen | None:
@@ -122,7 +125,7 @@ class Rivals:
             if gap <= self._reach or (gap <= gate and not self._doubts(found, track_seen))
         ]
         surest = max((found.confidence for _, found in own), default=0.0)
-        sure = [(gap, found) for gap, found in own if found.confidence >= _SURE * surest]
+        sure = [(gap, found) for gap, found in own if found.confidence >= _SURE_SHARE * surest]
         _, nearest = min(sure, key=itemgetter(0), default=(0.0, None))
         return nearest
 
@@ -161,9 +164,11 @@ class Rivals:
             rival.detections += 1
             rival.confidence += confidence
         own, often = self._evidence.at(time), rival.evidence.at(time)
-        enough = max(_ENOUGH, _WEAK * self._usual * rival.detections)
+        enough = max(_EVIDENCE_ALONE, _WEAK * self._usual * rival.detections)
         unseen = rival.detections >= (confirmations or self._confirmations) and rival.confidence >= enough
-        if not (unseen and not occupied) and not (often >= _ENOUGH and often > _MARGIN * own > 0.0):
+        if not (unseen and not occupied) and not (
+            often >= _EVIDENCE_ALONE and often > _EVIDENCE_RATIO * own > 0.0
+        ):
             return False
         self._known.remove(rival)
         if track is not None:
@@ -178,10 +183,10 @@ class Rivals:
             rival.detections, rival.confidence = 0, 0.0
 
     def _forget(self, time: float) -> None:
-        self._known = [rival for rival in self._known if time - rival.time <= _MEMORY]
+        self._known = [rival for rival in self._known if time - rival.time <= _EVIDENCE_TIME]
 
     def _add(self, rival: _Rival) -> _Rival:
-        if len(self._known) >= _MOST:
+        if len(self._known) >= _MOST_RIVALS:
             self._known.remove(min(self._known, key=lambda known: known.time))
         self._known.append(rival)
         return rival
@@ -191,7 +196,7 @@ class Rivals:
         least = inf
         for rival in self._known:
             gap = hypot(x - rival.x, y - rival.y)
-            elapsed = min(_LONGEST_GAP, max(0.0, time - rival.time))
+            elapsed = min(_LONGEST_REACH_TIME, max(0.0, time - rival.time))
             if gap <= self._reach + self._speed * elapsed and gap < least:
                 nearest, least = rival, gap
         return nearest

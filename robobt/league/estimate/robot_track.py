@@ -42,7 +42,7 @@ class RobotMotion:
     omega: float = 0.0
 
 
-_STEP = 0.005
+_TURNING_STEP = 0.005
 """Longest step of the motion model, as a commanded velocity turns with the robot [s]."""
 
 _NOISE, _TURN_NOISE = 0.03, 0.4
@@ -55,7 +55,7 @@ _COMMAND_ERROR = 0.1
 """Relative error of the acceleration that commands cause in the model."""
 
 
-_OFFSET, _HEADING_OFFSET = 0.03, 0.03
+_ROBOT_OFFSET_SPREAD, _HEADING_OFFSET_SPREAD = 0.03, 0.03
 """Standard deviation of a camera's offset about its mean [m, rad]."""
 
 _HEADING_GATE = 6.0
@@ -64,13 +64,13 @@ _HEADING_GATE = 6.0
 _HEADING_REACH = 0.6
 """Headings this close to each other agree [rad]."""
 
-_SPIN = 15.0
+_COLLISION_SPIN = 15.0
 """Turning rate that a robot may get in a collision [rad/s]."""
 
-_CONFIRMATIONS, _SPUN_CONFIRMATIONS = 10, 3
+_HEADING_CONFIRMATIONS, _SPUN_CONFIRMATIONS = 10, 3
 """Number of agreeing headings in a row beyond the gate that are believed, and of such as a spin explains."""
 
-_FRAME = 0.03
+_HEADING_PERIOD = 0.03
 """Headings that come at least this often leave no gap in which a robot turns unseen [s]."""
 
 
@@ -112,16 +112,18 @@ class RobotTrack:
     def restart(self, x: float, y: float, heading: float, time: float, camera: int) -> None:
         """Restart the track at rest at a camera's detection."""
         self.time = time
-        self._position = OffsetCovariance(1.0, _OFFSET, self._sensing.offsets)
+        self._position = OffsetCovariance(1.0, _ROBOT_OFFSET_SPREAD, self._sensing.offsets)
         dx, dy = self._position.begin(camera, time, self._r)
         self.motion = RobotMotion(x - dx, y - dy, heading)
         self._mismatch = Mismatch()
-        self._headings = Rivals(_CONFIRMATIONS, _HEADING_REACH, _SPIN)
+        self._headings = Rivals(_HEADING_CONFIRMATIONS, _HEADING_REACH, _COLLISION_SPIN)
         self._headings.saw_track(camera, 1.0, time)
         self._restart_heading(heading, time, camera)
 
     def _restart_heading(self, heading: float, time: float, camera: int) -> None:
-        self._heading = OffsetCovariance(_SPIN**2, _HEADING_OFFSET, self._sensing.heading_offsets)
+        self._heading = OffsetCovariance(
+            _COLLISION_SPIN**2, _HEADING_OFFSET_SPREAD, self._sensing.heading_offsets
+        )
         (offset,) = self._heading.begin(camera, time, self._rh)
         self.motion.heading, self.motion.omega = wrap_angle(heading - offset), 0.0
         self._heading_mismatch = Mismatch()
@@ -192,16 +194,16 @@ class RobotTrack:
         s = p.detection_variance(camera) + self._rh
         unseen, self._heading_seen = time - self._heading_seen, time
         gate = _HEADING_GATE * sqrt(s) + self.limits.turn_acceleration * unseen**2 / 2
-        gate += self.limits.max_turn * max(0.0, unseen - _FRAME)
+        gate += self.limits.max_turn * max(0.0, unseen - _HEADING_PERIOD)
         if abs(dh) > gate:
-            spun = abs(dh) < _HEADING_REACH + _SPIN * (time - self._heading_used)
+            spun = abs(dh) < _HEADING_REACH + _COLLISION_SPIN * (time - self._heading_used)
             if self._headings.believes(
                 cos(heading),
                 sin(heading),
                 camera,
                 confidence,
                 time,
-                confirmations=_SPUN_CONFIRMATIONS if spun else _CONFIRMATIONS,
+                confirmations=_SPUN_CONFIRMATIONS if spun else _HEADING_CONFIRMATIONS,
             ):
                 self._restart_heading(heading, time, camera)
             return
@@ -232,7 +234,7 @@ def predict_robot(
         while index < len(commands) and commands[index].since <= now + 1e-9:
             index += 1
         until = min(end, commands[index].since) if index < len(commands) else end
-        until = min(until, now + _STEP)
+        until = min(until, now + _TURNING_STEP)
         _drive(state, commands[index - 1].command if index else None, limits, until - now)
         now = until
     return state

@@ -21,9 +21,9 @@ from robobt.signals import uninterrupted
 
 _log = logging.getLogger(__name__)
 
-_MAGIC = b"SSL_LOG_FILE"
-_VERSION = 1
-_HEADER = struct.Struct(">12si")
+_LOG_MAGIC = b"SSL_LOG_FILE"
+_LOG_VERSION = 1
+_LOG_HEADER = struct.Struct(">12si")
 _RECORD = struct.Struct(">qii")
 
 _MAX_RECORD = 1 << 20
@@ -68,7 +68,7 @@ class LogWriter:
 
     def __init__(self, path: str | Path) -> None:
         self._file = _open(Path(path), "wb")
-        self._file.write(_HEADER.pack(_MAGIC, _VERSION))
+        self._file.write(_LOG_HEADER.pack(_LOG_MAGIC, _LOG_VERSION))
         self._unflushed = 0
 
     def write(self, time: int, kind: LogKind, data: bytes) -> None:
@@ -107,14 +107,14 @@ def read_log(path: str | Path) -> Iterator[LogRecord]:
     where = Path(path)
     with _open(where, "rb") as file:
         try:
-            header = file.read(_HEADER.size)
+            header = file.read(_LOG_HEADER.size)
         except (gzip.BadGzipFile, zlib.error, EOFError) as error:
             raise LogError(f"{where}: is not a log: {error}") from error
-        if len(header) < _HEADER.size or not header.startswith(_MAGIC):
-            raise LogError(f"{where}: is not a log: it does not begin with {_MAGIC.decode()}")
-        version = _HEADER.unpack(header)[1]
-        if version != _VERSION:
-            raise LogError(f"{where}: has version {version} of the format; only {_VERSION} can be read")
+        if len(header) < _LOG_HEADER.size or not header.startswith(_LOG_MAGIC):
+            raise LogError(f"{where}: is not a log: it does not begin with {_LOG_MAGIC.decode()}")
+        version = _LOG_HEADER.unpack(header)[1]
+        if version != _LOG_VERSION:
+            raise LogError(f"{where}: has version {version} of the format; only {_LOG_VERSION} can be read")
         number = 0
         while (record := _read_record(file, where, number)) is not None:
             if record is not _SKIPPED:

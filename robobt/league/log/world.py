@@ -21,7 +21,7 @@ from robobt.world.game import OPEN_PLAY
 from robobt.world.protocol import Placement, World
 from robobt.world.state import BallState, Frame, RobotId
 
-_GAP = 2.0
+_LONGEST_PAUSE = 2.0
 """Pauses in a log are shortened to this [s]."""
 
 
@@ -77,7 +77,7 @@ class LogWorld(World):
         while self._waiting is not None and self._waiting.time <= self._clock:
             self._use(self._waiting)
         if self._waiting is not None:
-            self._clock = max(self._clock, self._waiting.time - round(_GAP * 1e9))
+            self._clock = max(self._clock, self._waiting.time - round(_LONGEST_PAUSE * 1e9))
         # A log's clocks may differ from the frames' time, so that only the tick is known.
         self._kicks = [(kick.robot, self._ticks * self.period) for kick in self._filter.kicks]
         self._filter.kicks.clear()
@@ -157,7 +157,7 @@ def log_factory(path: str | Path) -> Callable[[Scenario], LogWorld]:
 
 
 def record_log(log: str | Path, out: str | Path, period: float = 1 / 30) -> Path:
-    """Convert a log to a recording, which ``robobt replay`` turns into a page, and return where it is.
+    """Convert a log to a recording, which ``robobt show`` turns into a page, and return where it is.
 
     ``period`` is the time from one frame of the recording to the next [s].
 

@@ -7,12 +7,12 @@ from collections.abc import Collection, Mapping
 from contextlib import ExitStack
 
 from robobt.config.closing import Closing
-from robobt.league.programs.program import SHOWN
+from robobt.league.programs.program import STREAMS
 from robobt.league.wire.endpoints import REFEREE_GROUP, VISION_GROUP
 from robobt.league.wire.grsim import read_grsim
 from robobt.league.wire.messages import RobotControlResponse
 from robobt.league.wire.simulation import read_control
-from robobt.league.wire.sockets import LOOPBACK, Packet, Receiver, Sender
+from robobt.league.wire.sockets import LOOPBACK_ADDRESS, Packet, Receiver, Sender
 from robobt.world.command import RobotCommand
 from robobt.world.game import Team
 from robobt.world.state import Frame, RobotId
@@ -52,14 +52,14 @@ class MatchPorts(Closing):
         self._beyond = dict.fromkeys(teams, 0)
         self.flooded: Team | None = None
         with ExitStack() as opened:
-            for name in SHOWN:
+            for name in STREAMS:
                 port: int = opened.enter_context(_reserved()).getsockname()[1]
                 group = _LEAGUE[name] if name in league_groups else _own_group(port)
                 self.senders[name] = opened.enter_context(Sender(group, port))
                 self._places |= {f"{name}_group": group, f"{name}_port": str(port), name: f"{group}:{port}"}
             for team in teams:
                 for kind in ("grsim", "protocol", "control"):
-                    self._receivers[team, kind] = opened.enter_context(Receiver(LOOPBACK, 0))
+                    self._receivers[team, kind] = opened.enter_context(Receiver(LOOPBACK_ADDRESS, 0))
             self._opened = opened.pop_all()
 
     def close(self) -> None:
@@ -69,7 +69,7 @@ class MatchPorts(Closing):
     def addresses(self, team: Team) -> dict[str, str]:
         """Return the addresses and port numbers for a team's program, by name."""
         own = {kind: str(port.port) for (whose, kind), port in self._receivers.items() if whose is team}
-        return {"team": team.value, "host": LOOPBACK, **self._places, **own}
+        return {"team": team.value, "host": LOOPBACK_ADDRESS, **self._places, **own}
 
     def sockets(self) -> list[Receiver]:
         """Return the sockets at which commands arrive, for ``select``."""
@@ -134,7 +134,7 @@ def _reserved() -> socket.socket:
     """
     holder = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
     try:
-        holder.bind((LOOPBACK, 0))
+        holder.bind((LOOPBACK_ADDRESS, 0))
         # Set only now, so that it does not share another match's port; a program bound to all addresses still
         # may.
         holder.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)

@@ -26,16 +26,16 @@ KEPT_OUTPUT = 1 << 20
 MOST_OUTPUT = 64 << 20
 """How much a program may print in a match [bytes]."""
 
-_MARK = "ROBOBT_PROGRAM"
+_PROCESS_VARIABLE = "ROBOBT_PROGRAM"
 """Environment variable that everything a program starts inherits."""
 
-_WORDS = 0.5
+_LAST_WORDS_TIMEOUT = 0.5
 """How long the last words of a program that has ended are waited for [s]."""
 
-_GONE = 10.0
+_CLEANUP_TIMEOUT = 10.0
 """How long the guard may take to end everything [s]."""
 
-_GUARD = r"""
+_GUARD_SCRIPT = r"""
 exec 3<&0 </dev/null
 env "$0" "$@" 3<&- & child=$!
 {
@@ -81,13 +81,13 @@ class TeamProcess(Closing):
     def __init__(self, command: Sequence[str], folder: Path, output: Path) -> None:
         if not is_there(command[0], folder):
             raise FileNotFoundError(errno.ENOENT, "there is no such program", command[0])
-        self._mark = f"{_MARK}={uuid4().hex}"
+        self._mark = f"{_PROCESS_VARIABLE}={uuid4().hex}"
         self._output = output
         self.printed, self.stubborn = 0, False
         self._told: set[int] = set()
         with uninterrupted:
             self._process = subprocess.Popen(
-                ["/bin/sh", "-c", _GUARD, self._mark, *command],
+                ["/bin/sh", "-c", _GUARD_SCRIPT, self._mark, *command],
                 cwd=folder,
                 stdin=subprocess.PIPE,
                 stdout=subprocess.PIPE,
@@ -107,12 +107,12 @@ class TeamProcess(Closing):
         """
         if wait:
             with suppress(subprocess.TimeoutExpired):
-                self._process.wait(_WORDS)
+                self._process.wait(_LAST_WORDS_TIMEOUT)
         code = self._process.poll()
         if code is None:
             return None
         how = f"was ended by signal {code - 128}" if code > 128 else f"ended with exit code {code}"
-        self._reader.join(_WORDS)
+        self._reader.join(_LAST_WORDS_TIMEOUT)
         words = self._output.read_text(errors="replace").split("\n") if self._output.exists() else []
         last = next((line for line in reversed(words) if line.strip()), "")
         return f"its program {how}{f': {one_line(last, 200)}' if last else ''}"
@@ -142,7 +142,7 @@ class TeamProcess(Closing):
             assert self._process.stdin is not None
             with suppress(OSError):
                 self._process.stdin.close()
-            end = time.monotonic() + _GONE
+            end = time.monotonic() + _CLEANUP_TIMEOUT
             while self._group() or self._marked():
                 if time.monotonic() > end:
                     self._kill()
@@ -150,7 +150,7 @@ class TeamProcess(Closing):
                 time.sleep(0.02)
                 self._process.poll()
             self._process.wait()
-            self._reader.join(_WORDS)
+            self._reader.join(_LAST_WORDS_TIMEOUT)
 
     def _kill(self) -> None:
         """Kill the remaining processes, because the program may have stopped or killed its guard."""

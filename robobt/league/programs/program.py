@@ -12,12 +12,12 @@ from robobt.config.errors import FieldError, RobobtError
 from robobt.config.validation import Settings
 from robobt.world.game import Team
 
-SHOWN = ("vision", "tracker", "referee")
+STREAMS = ("vision", "tracker", "referee")
 """What a program sees; each comes to a multicast group."""
 
-PLACES = (
+PLACEHOLDERS = (
     *("team", "host"),
-    *[f"{name}{part}" for name in SHOWN for part in ("", "_group", "_port")],
+    *[f"{name}{part}" for name in STREAMS for part in ("", "_group", "_port")],
     *("grsim", "protocol", "control", "steps"),
 )
 """What is filled in, in braces."""
@@ -54,8 +54,8 @@ class Program(Settings):
     @classmethod
     def _known(cls, command: tuple[str, ...]) -> tuple[str, ...]:
         for name in _named(command):
-            if name not in PLACES:
-                there = ", ".join([f"{{{place}}}" for place in PLACES])
+            if name not in PLACEHOLDERS:
+                there = ", ".join([f"{{{place}}}" for place in PLACEHOLDERS])
                 raise ValueError(
                     f"nothing is filled in for {{{name}}}; there are {there}; {{{{{name}}}}} is {{{name}}} "
                     "as it is"
@@ -75,7 +75,7 @@ class Program(Settings):
     def league_groups(self) -> set[str]:
         """Return what it sees in the league's multicast groups: it takes the port alone."""
         names = _named(self.command)
-        return {name for name in SHOWN if f"{name}_port" in names and not {name, f"{name}_group"} & names}
+        return {name for name in STREAMS if f"{name}_port" in names and not {name, f"{name}_group"} & names}
 
     def words(self, addresses: Mapping[str, str]) -> list[str]:
         """Return the command with these in their places."""

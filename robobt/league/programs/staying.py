@@ -13,7 +13,7 @@ from robobt.match.scenario.scenario import Scenario
 from robobt.world.game import Team
 from robobt.world.protocol import World
 
-_MOST = 4
+_MOST_STAYING = 4
 """How many matches' programs stay in one process; those that have waited longest are ended for others."""
 
 _STAYING: dict[str, ProgramWorld] = {}
@@ -56,7 +56,7 @@ def programs_in(
         served.close()
         raise
     _STAYING[key] = served
-    while len(_STAYING) > _MOST:
+    while len(_STAYING) > _MOST_STAYING:
         _STAYING.pop(next(iter(_STAYING))).close()
 
 

@@ -8,12 +8,12 @@ from typing import Self
 
 from robobt.league.wire.messages import RobotControlResponse, SimulationSyncRequest, SimulationSyncResponse
 from robobt.league.wire.packets import PacketCounts, decode
-from robobt.league.wire.sockets import LOOPBACK
+from robobt.league.wire.sockets import LOOPBACK_ADDRESS
 from robobt.league.wire.steps import NO_STEP
 from robobt.league.wire.stream import MessageStream, StreamError
 from robobt.league.wire.vision import CameraFrame, write_frame
 
-_LONGEST = 600
+_MOST_STEPS_AT_ONCE = 600
 """Most control periods that a program may let pass at once."""
 
 
@@ -34,7 +34,7 @@ class StepPort:
     """
 
     def __init__(self, period: float) -> None:
-        self._listening = socket.create_server((LOOPBACK, 0))
+        self._listening = socket.create_server((LOOPBACK_ADDRESS, 0))
         self.port: int = self._listening.getsockname()[1]
         self.counts = PacketCounts()
         self.left = 0
@@ -85,8 +85,8 @@ class StepPort:
         self._asked, self._errors = True, []
         steps = request.sim_step / self._period
         # NaN compares as false.
-        if not 0.0 <= steps <= _LONGEST or abs(steps - round(steps)) > 1e-3:
-            most = f"at most {_LONGEST * self._period:g} s"
+        if not 0.0 <= steps <= _MOST_STEPS_AT_ONCE or abs(steps - round(steps)) > 1e-3:
+            most = f"at most {_MOST_STEPS_AT_ONCE * self._period:g} s"
             self._errors.append((NO_STEP, f"a step is a multiple of {self._period:.6f} s, {most}"))
             steps = 0.0
         self.left = round(steps)

@@ -31,7 +31,7 @@ from robobt.world.game import GameState, RefereeCommand, Team
 from robobt.world.protocol import Placement, World, WrappedWorld
 from robobt.world.state import Frame, RobotId
 
-_LISTENS = 0.05
+_PROGRAM_POLL = 0.05
 """How long a program in lock step is waited for until the others are looked at [s]."""
 
 _TIMEOUT = 0.1
@@ -203,7 +203,7 @@ class ProgramWorld(WrappedWorld):
             if left <= 0.0:
                 self._check()
             sockets = [one.fileno() for one in self._ports.sockets()] + [one.fileno() for one in waited_for]
-            if select.select(sockets, [], [], left if left > 0.0 else _LISTENS)[0]:
+            if select.select(sockets, [], [], left if left > 0.0 else _PROGRAM_POLL)[0]:
                 # Who floods its port is read at most a thousand times a second.
                 time.sleep(max(0.0, min(0.001, left)))
         self._ports.period_over()

@@ -30,7 +30,7 @@ from robobt.world.state import Frame
 EPOCH = 1_700_000_000
 """The controller's clock at the start of the match [s]; any time except 0 works."""
 
-_LONGEST = 50
+_MOST_CONSEQUENCES = 50
 """More consequences than one change has ever had."""
 
 _RESTLESS = "the game controller does not come to rest"
@@ -103,7 +103,7 @@ class LockstepController:
     def rest(self) -> list[Referee]:
         """Wait until all consequences of the last tick are done, and return the controller's answers."""
         said: list[Referee] = []
-        for _ in range(_LONGEST):
+        for _ in range(_MOST_CONSEQUENCES):
             answers = self._marked(CiInput())
             said += answers
             if len(answers) == 1:
@@ -118,7 +118,7 @@ class LockstepController:
         message.api_inputs.add().change.set_status_message_change.status_message = done
         self._send(message)
         said: list[Referee] = []
-        for _ in range(_LONGEST):
+        for _ in range(_MOST_CONSEQUENCES):
             said.append(self._next())
             if said[-1].status_message == done:
                 return said

@@ -30,7 +30,7 @@ from robobt.world.game import Restart
 from robobt.world.presence import without_absent
 from robobt.world.state import Frame
 
-_DECIDING, _STOPPED, _WAITING = 0.1, 0.2, 0.8
+_DECIDING_PERIOD, _STOPPED_PERIOD, _WAITING_PERIOD = 0.1, 0.2, 0.8
 """Time between two ticks of the controller [s].
 
 Three values: while it has something to decide; while play is stopped; while it waits for a report, with the
@@ -91,8 +91,8 @@ class OfficialReferee:
                     events += self._hear(controller.change(changes), frame.time)
                 game = self._follower.game
                 waits = game.in_play or game.restart is Restart.BALL_PLACEMENT
-                pause = _WAITING if waits else _STOPPED
-                self._due = frame.time + (_DECIDING if frame.time < self._decided else pause)
+                pause = _WAITING_PERIOD if waits else _STOPPED_PERIOD
+                self._due = frame.time + (_DECIDING_PERIOD if frame.time < self._decided else pause)
                 controller.ask(frame.time, without_absent(frame, game))
         except GameControllerError as error:
             crash = "" if self._process is None else self._process.crash()

@@ -10,6 +10,7 @@ import logging
 from robobt.league.referee.setup import ball_position, command, stage
 from robobt.league.referee.waiting import ball_problems, waits_for
 from robobt.league.wire.messages import Change
+from robobt.match.referee.controller import HALT_TIME
 from robobt.match.referee.positions import ball_placed, spot_free
 from robobt.match.referee.restarts import free_kick_spot, penalty
 from robobt.match.referee.settings import RefereeSettings
@@ -21,31 +22,28 @@ from robobt.world.state import Frame
 
 _log = logging.getLogger(__name__)
 
-_HALT_TIME = 2.0
-"""Robots have this long to stand, and people to carry the ball, before a HALT ends [s]. Source: SSL rules."""
-
 _SUBSTITUTION_TIME = 15.0
 """After this long a HALT for a substitution ends: after 20 s it would count as another one [s]."""
 
 _TIMEOUT_TIME = 10.0
 """How long a time-out lasts [s]."""
 
-_IDLE = 5.0
+_FORCE_START_DELAY = 5.0
 """A STOP after which nothing is to follow ends with a force start after this long [s]."""
 
 _GIVEN_UP = 2.0
 """In a STOP that has lasted this long the controller will not ask robots to place the ball any more [s]."""
 
-_PATIENCE = 5.0
+_PUT_DOWN_TIMEOUT = 5.0
 """The ball is put down after this long even if a robot stands on the spot [s]."""
 
-_ROLLS = 0.15
+_PUT_DOWN_SPEED = 0.15
 """A ball that is faster is not put down yet [m/s]."""
 
-_MOVED = 0.1
+_PLACE_DIFFERENCE = 0.1
 """The controller's place is not the one of the restart from this distance on [m]."""
 
-_LONG = 60.0
+_REPORTED_STOP_TIME = 60.0
 """A stop longer than this is reported, with the reason for which the controller waits [s]."""
 
 _BREAKS = frozenset(
@@ -74,10 +72,10 @@ class People:
         if game.stage is Stage.POST_GAME:
             return []
         if game.stage in _BREAKS:
-            over = lasted >= max(_HALT_TIME, self._settings.half_time)
+            over = lasted >= max(HALT_TIME, self._settings.half_time)
             return [stage(Stage(game.stage + 1))] if over else []
         if game.command is RefereeCommand.HALT:
-            wait = _SUBSTITUTION_TIME if game.blue.substituting or game.yellow.substituting else _HALT_TIME
+            wait = _SUBSTITUTION_TIME if game.blue.substituting or game.yellow.substituting else HALT_TIME
             return [command("STOP")] if lasted >= wait else []
         if game.command in (RefereeCommand.TIMEOUT_BLUE, RefereeCommand.TIMEOUT_YELLOW):
             return [command("STOP")] if lasted >= _TIMEOUT_TIME else []
@@ -93,15 +91,19 @@ class People:
         over = stages.over((game.blue_score, game.yellow_score)) if game.stage in _PLAYED else None
         if over is not None and game.restart is Restart.PENALTY and not stages.shoot_out:
             # The penalty kick is still taken, but nothing continues automatically any more.
-            return [command("PENALTY", game.restart_team)] if lasted >= _IDLE else []
+            return [command("PENALTY", game.restart_team)] if lasted >= _FORCE_START_DELAY else []
         if over is not None:
             return [stage(over)]
         spot = self._prepared(game)
-        if spot is not None and game.placement is not None and distance(game.placement, spot) > _MOVED:
+        if (
+            spot is not None
+            and game.placement is not None
+            and distance(game.placement, spot) > _PLACE_DIFFERENCE
+        ):
             # A ball that left the field while a penalty was being given has moved its place, and the
             # controller waits for the ball to be there.
             return [ball_position(spot)]
-        if game.upcoming is None and lasted >= _IDLE:
+        if game.upcoming is None and lasted >= _FORCE_START_DELAY:
             return [command("FORCE_START")]
         return []
 
@@ -110,7 +112,7 @@ class People:
         spot = self._spot(frame, game)
         if spot is None or ball_placed(frame, spot):
             return None
-        return spot if spot_free(frame, spot) or self._lasted(frame, game) > _PATIENCE else None
+        return spot if spot_free(frame, spot) or self._lasted(frame, game) > _PUT_DOWN_TIMEOUT else None
 
     def _lasted(self, frame: Frame, game: GameState) -> float:
         """Return for how long the present command and stage have been in force [s]."""
@@ -120,7 +122,7 @@ class People:
             if state == (RefereeCommand.NORMAL_START, Stage.PENALTY_SHOOTOUT):
                 self._stages.begin_attempt()
         lasted = frame.time - self._since
-        if lasted > _LONG and not self._told and not game.in_play:
+        if lasted > _REPORTED_STOP_TIME and not self._told and not game.in_play:
             self._told = True
             reasons = ", ".join(waits_for(self._field, frame, game)) or "nothing that can be seen"
             _log.warning("%s lasts for %.0f s: %s", game.command.name, lasted, reasons)
@@ -141,7 +143,7 @@ class People:
             return prepared
         wait = _GIVEN_UP if self._settings.placement == "robots" else self._settings.placement_delay
         given_up = game.command is RefereeCommand.STOP and self._lasted(frame, game) > wait
-        if not given_up or frame.ball.speed > _ROLLS or not ball_problems(self._field, frame, game):
+        if not given_up or frame.ball.speed > _PUT_DOWN_SPEED or not ball_problems(self._field, frame, game):
             return None
         return game.placement or free_kick_spot(self._field, *frame.ball.position)
 

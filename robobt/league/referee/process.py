@@ -20,7 +20,7 @@ from pathlib import Path
 from robobt.config.closing import Closing
 from robobt.config.errors import RobobtError, one_line
 from robobt.config.systems import need_posix
-from robobt.league.wire.sockets import LOOPBACK
+from robobt.league.wire.sockets import LOOPBACK_ADDRESS
 from robobt.league.wire.stream import MessageStream
 from robobt.signals import uninterrupted
 
@@ -30,16 +30,16 @@ PROGRAM = "ssl-game-controller"
 VARIABLE = "ROBOBT_GAME_CONTROLLER"
 """The environment variable that names it."""
 
-_PATIENCE = 20.0
+_STARTING_TIMEOUT = 20.0
 """How long the program may take until it listens, on a busy machine [s]."""
 
-_GONE = 10.0
+_SHUTDOWN_TIMEOUT = 10.0
 """How long the shell that guards the program may take to end everything [s]."""
 
-_TRIES = 5
+_PORT_TRIES = 5
 """How often another port is tried: between finding a free one and using it somebody else may."""
 
-_GUARD = """
+_GUARD_SHELL = """
 exec 3<&0
 "$@" 3<&- & child=$!
 { read -r _ <&3 || rm -rf -- "$0"; kill -KILL 0; } & wait "$child"
@@ -136,14 +136,16 @@ class GameControllerProcess(Closing):
         (config / f"{PROGRAM}.yaml").write_text(json.dumps(settings))
 
     def _start(self, program: Path) -> MessageStream:
-        for _ in range(_TRIES):
+        for _ in range(_PORT_TRIES):
             port = _free_port()
             with uninterrupted:
                 self._process = self._spawn(program, port)
-            end = time.monotonic() + _PATIENCE
+            end = time.monotonic() + _STARTING_TIMEOUT
             while time.monotonic() < end and self._process.poll() is None and not self._refused():
                 try:
-                    return MessageStream(socket.create_connection((LOOPBACK, port)), "the game controller")
+                    return MessageStream(
+                        socket.create_connection((LOOPBACK_ADDRESS, port)), "the game controller"
+                    )
                 except OSError:
                     time.sleep(0.005)
             refused = self._refused()
@@ -155,10 +157,17 @@ class GameControllerProcess(Closing):
     def _spawn(self, program: Path, port: int) -> subprocess.Popen[bytes]:
         # Only the port that is used has to be known; the others are the system's choice.
         others = ("address", "autorefAddress", "teamAddress", "remoteControlAddress")
-        flags = [text for flag in others for text in (f"-{flag}", f"{LOOPBACK}:0")]
+        flags = [text for flag in others for text in (f"-{flag}", f"{LOOPBACK_ADDRESS}:0")]
         command = [
-            *("/bin/sh", "-c", _GUARD, self._folder.name, str(program)),
-            *("-backendOnly", "-timeAcquisitionMode", "ci", "-ciAddress", f"{LOOPBACK}:{port}", *flags),
+            *("/bin/sh", "-c", _GUARD_SHELL, self._folder.name, str(program)),
+            *(
+                "-backendOnly",
+                "-timeAcquisitionMode",
+                "ci",
+                "-ciAddress",
+                f"{LOOPBACK_ADDRESS}:{port}",
+                *flags,
+            ),
         ]
         with self._log.open("wb") as log:
             return subprocess.Popen(
@@ -187,7 +196,7 @@ class GameControllerProcess(Closing):
                 process.stdin.write(b"\n")
                 process.stdin.close()
             try:
-                process.wait(_GONE)
+                process.wait(_SHUTDOWN_TIMEOUT)
             except subprocess.TimeoutExpired:
                 # The program has stopped or killed what was to end it.
                 os.killpg(process.pid, signal.SIGKILL)
@@ -201,6 +210,6 @@ class GameControllerProcess(Closing):
 
 def _free_port() -> int:
     with socket.socket() as probe:
-        probe.bind((LOOPBACK, 0))
+        probe.bind((LOOPBACK_ADDRESS, 0))
         port: int = probe.getsockname()[1]
         return port

@@ -12,7 +12,7 @@ from robobt.league.wire.gameevents import write_event
 from robobt.league.wire.messages import AutoRefConfig, Change, Command, Config, GameEvent
 from robobt.match.referee.events import EventKind, RefereeEvent
 from robobt.match.referee.openings import Opening
-from robobt.match.referee.restarts import PLACE
+from robobt.match.referee.restarts import PLACEMENT_COMMANDS
 from robobt.match.referee.settings import RefereeSettings
 from robobt.world.division import division_of
 from robobt.world.field import FieldGeometry
@@ -114,7 +114,7 @@ def _begin(opening: Opening) -> list[Change]:
         event = write_event(RefereeEvent(0.0, cause, team.other, None, *opening.resumption.spot), 0.0, "UI")
         event.ClearField("created_timestamp")
         begin.append(game_event(event))
-    if team is not None and opening.command is PLACE[team]:
+    if team is not None and opening.command is PLACEMENT_COMMANDS[team]:
         begin.append(command("BALL_PLACEMENT", team))
     return begin
 

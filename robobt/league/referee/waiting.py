@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from math import hypot
 
-from robobt.match.referee.positions import penalty_problems
+from robobt.match.referee.positions import NEAR_SPOT, PLACEMENT_AREA_GAP, STILL_BALL_SPEED, penalty_problems
 from robobt.match.referee.restarts import penalty
 from robobt.world.field import FieldGeometry
 from robobt.world.game import GameState, RefereeCommand, Restart, Team
@@ -19,18 +19,15 @@ from robobt.world.state import ROBOT_RADIUS, Frame
 _NEAR_BALL = 0.54
 """No robot's centre may be nearer to the ball in STOP [m]."""
 
-_PLACED, _AREA_GAP, _STILL = 1.0, 0.7, 0.2
-"""Largest distance of the ball from its place, least distance from defence areas, top speed [m, m, m/s]."""
-
 
 def ball_problems(field: FieldGeometry, frame: Frame, game: GameState) -> list[str]:
     """Return why the ball's place prevents play from continuing; empty if it is right."""
     ball, problems = frame.ball, []
-    if ball.speed >= _STILL:
+    if ball.speed >= STILL_BALL_SPEED:
         problems.append("the ball rolls")
-    if game.placement is not None and distance(ball.position, game.placement) > _PLACED:
+    if game.placement is not None and distance(ball.position, game.placement) > NEAR_SPOT:
         problems.append(f"the ball is {distance(ball.position, game.placement):.2f} m from its place")
-    if any(in_defense_area(field, team, ball.x, ball.y, _AREA_GAP) for team in Team):
+    if any(in_defense_area(field, team, ball.x, ball.y, PLACEMENT_AREA_GAP) for team in Team):
         problems.append("the ball is too near to a defence area")
     if ball_out(field, ball.position):
         problems.append("the ball is out of the field")

@@ -16,10 +16,10 @@ from robobt.world.field import FieldGeometry
 from robobt.world.geometry import Point, wrap_angle
 from robobt.world.state import BALL_RADIUS, BallState, Frame
 
-_OVERLAP = 0.2
+_CAMERA_OVERLAP = 0.2
 """How far a camera sees beyond its part of the field [m]. Source: grSim's cameras."""
 
-_MAX_CAMERAS = 16
+_MAX_SERVED_CAMERAS = 16
 
 _LEAST_BELOW = 0.1
 """A ball never counts as nearer to a camera's height than this [m]."""
@@ -39,8 +39,8 @@ class Cameras:
     def __init__(
         self, field: FieldGeometry, realism: RealismSettings, count: int, rng: np.random.Generator
     ) -> None:
-        if not 1 <= count <= _MAX_CAMERAS:
-            raise ValueError(f"a field has 1 to {_MAX_CAMERAS} cameras, not {count}")
+        if not 1 <= count <= _MAX_SERVED_CAMERAS:
+            raise ValueError(f"a field has 1 to {_MAX_SERVED_CAMERAS} cameras, not {count}")
         self.realism, self._rng = realism, rng
         self._areas = _areas(field, count)
         most_x, most_y = field.half_length, field.half_width
@@ -98,7 +98,10 @@ def _areas(field: FieldGeometry, count: int) -> list[tuple[float, float, float, 
     def edges(parts: int, length: float) -> list[tuple[float, float]]:
         cuts = [-length / 2 + length * i / parts for i in range(parts + 1)]
         return [
-            (-far if i == 0 else cuts[i] - _OVERLAP, far if i == parts - 1 else cuts[i + 1] + _OVERLAP)
+            (
+                -far if i == 0 else cuts[i] - _CAMERA_OVERLAP,
+                far if i == parts - 1 else cuts[i + 1] + _CAMERA_OVERLAP,
+            )
             for i in range(parts)
         ]
 
@@ -110,5 +113,8 @@ def _areas(field: FieldGeometry, count: int) -> list[tuple[float, float, float, 
 
 def _middle(low: float, high: float, most: float) -> float:
     """Return the middle of what lies within ``most`` from the centre, without overlaps [m]."""
-    low, high = (-most if low < -most else low + _OVERLAP), (most if high > most else high - _OVERLAP)
+    low, high = (
+        (-most if low < -most else low + _CAMERA_OVERLAP),
+        (most if high > most else high - _CAMERA_OVERLAP),
+    )
     return (low + high) / 2

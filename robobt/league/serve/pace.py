@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-_BEHIND = 0.25
+_SKIPPED_LATENESS = 0.25
 """A server later than this skips frames instead of sending them all at once [s]."""
 
 _CATCH_UP = 0.005
 """Relative speed-up until it is on time again, too small for clients to notice."""
 
-_WINDOW = 5.0
+_SPEED_WINDOW = 5.0
 """Time over which the field's speed is measured [s]."""
 
-_SLOW = 0.98
+_KEPT_SPEED_SHARE = 0.98
 """A field that keeps less than this share of its speed is slow."""
 
 
@@ -41,15 +41,15 @@ class ServingPace:
 
     def reached(self, time: float, period: float) -> None:
         """Take note of how far the simulation has come [s]; if it is far behind, more is not asked of it."""
-        if self.due - time > _BEHIND + period:
+        if self.due - time > _SKIPPED_LATENESS + period:
             self.due = time + period
         if self._asked > self._start:
             self.kept = (self.due - self._start) / (self._asked - self._start)
 
     def slow(self) -> float | None:
         """Return the share of its speed that the field kept lately, None while it keeps it."""
-        if self._now - self._looked < _WINDOW:
+        if self._now - self._looked < _SPEED_WINDOW:
             return None
         asked, done = self._asked - self._then[0], self.due - self._then[1]
         self._looked, self._then = self._now, (self._asked, self.due)
-        return done / asked if done < _SLOW * asked else None
+        return done / asked if done < _KEPT_SPEED_SHARE * asked else None

@@ -23,16 +23,16 @@ from robobt.league.wire.messages import (
 )
 from robobt.league.wire.packets import read
 from robobt.league.wire.simulation import TEAMS, read_control, read_teleports
-from robobt.league.wire.sockets import LOOPBACK, Packet, Receiver
+from robobt.league.wire.sockets import LOOPBACK_ADDRESS, Packet, Receiver
 from robobt.sim.settings import RealismSettings
 from robobt.world.game import Team
 from robobt.world.limits import RobotLimits
 from robobt.world.state import RobotId
 
-_MAX_READING = 0.002
+_PORT_READING_TIME = 0.002
 """How long one port is read at a time, so that no flood delays the other ports or the field [s]."""
 
-_SPEEDS = (0.05, 20.0)
+_SPEED_FACTORS = (0.05, 20.0)
 """Slowest and fastest simulation, as simulated time over real time."""
 
 _REALISM = {
@@ -58,8 +58,8 @@ class ClientPorts:
     def __init__(
         self, field: ServedField, cameras: Cameras, endpoints: Endpoints, interface: str, speed: float
     ) -> None:
-        if not _SPEEDS[0] <= speed <= _SPEEDS[1]:
-            raise ValueError(f"the speed must be {_SPEEDS[0]} to {_SPEEDS[1]}, not {speed}")
+        if not _SPEED_FACTORS[0] <= speed <= _SPEED_FACTORS[1]:
+            raise ValueError(f"the speed must be {_SPEED_FACTORS[0]} to {_SPEED_FACTORS[1]}, not {speed}")
         self.speed = speed
         self._field, self._cameras = field, cameras
         self._handlers: dict[str, Callable[[Receiver, Packet], None]] = {
@@ -72,7 +72,9 @@ class ClientPorts:
         try:
             for name in self._handlers:
                 port: int = getattr(endpoints, name)
-                self._ports[name] = Receiver(interface, port, interface if interface != LOOPBACK else None)
+                self._ports[name] = Receiver(
+                    interface, port, interface if interface != LOOPBACK_ADDRESS else None
+                )
         except (OSError, ValueError):
             self.close()
             raise
@@ -86,7 +88,7 @@ class ClientPorts:
         """Process the waiting packets; a flood of them not all at once."""
         for name, handler in self._handlers.items():
             receiver = self._ports[name]
-            end = time.monotonic() + _MAX_READING
+            end = time.monotonic() + _PORT_READING_TIME
             for packet in receiver.receive():
                 handler(receiver, packet)
                 if time.monotonic() > end:
@@ -161,10 +163,10 @@ class ClientPorts:
         errors = [("CANNOT_TELEPORT", problem) for problem in self._teleport(request)]
         if message.control.HasField("simulation_speed"):
             speed = message.control.simulation_speed
-            if _SPEEDS[0] <= speed <= _SPEEDS[1]:
+            if _SPEED_FACTORS[0] <= speed <= _SPEED_FACTORS[1]:
                 self.speed = speed
             else:
-                errors.append(("SPEED", f"the speed must be {_SPEEDS[0]} to {_SPEEDS[1]}"))
+                errors.append(("SPEED", f"the speed must be {_SPEED_FACTORS[0]} to {_SPEED_FACTORS[1]}"))
         errors += self._configure(message)
         response = SimulatorResponse()
         _add(response, errors)

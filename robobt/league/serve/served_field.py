@@ -28,13 +28,13 @@ TEAM_SIZE = 16
 COMMAND_TIMEOUT = 0.1
 """A robot that gets no command for this long stops [s]. Source: ER-Force's standby time."""
 
-_PARKED = 1.5
+_ABSENT_ROBOT_DISTANCE = 1.5
 """Distance from the walls to the robots that are not on the field [m]."""
 
-_MAX_SPEED = 20.0
+_MAX_TELEPORT_SPEED = 20.0
 """Fastest velocity that a teleport may give [m/s, rad/s]."""
 
-_MAX_HEIGHT = 3.0
+_MAX_TELEPORT_HEIGHT = 3.0
 """Greatest height that a teleport may give, below the cameras [m]."""
 
 
@@ -153,7 +153,7 @@ class ServedField:
         if not self._inside(state[0], state[1]) or not np.isfinite(state).all():
             return f"{robot.robot} cannot be put at ({state[0]:g}, {state[1]:g}), outside the walls"
         state[2] = wrap_angle(float(state[2]))
-        state[3:] = np.clip(state[3:], -_MAX_SPEED, _MAX_SPEED)
+        state[3:] = np.clip(state[3:], -_MAX_TELEPORT_SPEED, _MAX_TELEPORT_SPEED)
         self._present[i] = True
         self._commands[0, i] = 0.0
         self._arenas.place_robot(0, i, state)
@@ -166,8 +166,10 @@ class ServedField:
         x, y, vx, vy = (before if new is None else new for new, before in zip(given, old, strict=True))
         if not self._inside(x, y) or not (isfinite(vx) and isfinite(vy)):
             return f"the ball cannot be put at ({x:g}, {y:g}), outside the walls"
-        vx, vy, vz = (min(max(speed, -_MAX_SPEED), _MAX_SPEED) for speed in (vx, vy, ball.vz))
-        self._arenas.place_ball(0, x, y, vx, vy, ball.rolls, min(max(ball.z, 0.0), _MAX_HEIGHT), vz)
+        vx, vy, vz = (
+            min(max(speed, -_MAX_TELEPORT_SPEED), _MAX_TELEPORT_SPEED) for speed in (vx, vy, ball.vz)
+        )
+        self._arenas.place_ball(0, x, y, vx, vy, ball.rolls, min(max(ball.z, 0.0), _MAX_TELEPORT_HEIGHT), vz)
         return None
 
     def place_ball(self, x: float, y: float) -> None:
@@ -209,7 +211,7 @@ class ServedField:
 
     def _park(self, i: int) -> None:
         """Put a robot beside the field, out of everybody's way."""
-        beside = self.field.outer[1] + _PARKED
+        beside = self.field.outer[1] + _ABSENT_ROBOT_DISTANCE
         x = (i % TEAM_SIZE - TEAM_SIZE / 2) * 3 * ROBOT_RADIUS
         y = beside if self._ids[i].team is Team.BLUE else -beside
         self._present[i] = False

@@ -23,7 +23,7 @@ from robobt.league.serve.referee import ServedReferee
 from robobt.league.serve.served_field import ServedField
 from robobt.league.wire.endpoints import Endpoints
 from robobt.league.wire.geometry import write_geometry
-from robobt.league.wire.sockets import LOOPBACK, Sender
+from robobt.league.wire.sockets import LOOPBACK_ADDRESS, Sender
 from robobt.league.wire.tracker import write_tracked
 from robobt.league.wire.vision import CameraFrame, write_vision
 from robobt.match.referee.settings import RefereeSettings
@@ -66,7 +66,7 @@ class SimServer(Closing):
         self,
         field: ServedField,
         endpoints: Endpoints | None = None,
-        interface: str = LOOPBACK,
+        interface: str = LOOPBACK_ADDRESS,
         cameras: int = 1,
         speed: float = 1.0,
         seed: int = 0,

@@ -18,7 +18,7 @@ from robobt.config.closing import Closing
 from robobt.league.serve.server import SimServer
 from robobt.league.wire.messages import RobotControlResponse, SimulationSyncRequest, SimulationSyncResponse
 from robobt.league.wire.packets import decode
-from robobt.league.wire.sockets import LOOPBACK
+from robobt.league.wire.sockets import LOOPBACK_ADDRESS
 from robobt.league.wire.steps import NO_STEP
 from robobt.league.wire.stream import MessageStream, StreamError
 from robobt.league.wire.vision import CameraFrame, write_frame
@@ -27,13 +27,13 @@ from robobt.world.game import Team
 
 _log = logging.getLogger(__name__)
 
-_LONGEST = 10.0
+_LONGEST_CLIENT_STEP = 10.0
 """Longest step that a client may ask for [s]."""
 
-_LISTENS = 0.05
+_STOP_POLL = 0.05
 """Longest wait before looking whether to stop [s]."""
 
-_TEAMS = {"control": None, "blue": Team.BLUE, "yellow": Team.YELLOW}
+_TEAM_PORTS = {"control": None, "blue": Team.BLUE, "yellow": Team.YELLOW}
 """The ports, and whose robots are commanded there."""
 
 
@@ -69,14 +69,15 @@ class StepServer(Closing):
     """
 
     def __init__(
-        self, server: SimServer, interface: str = LOOPBACK, ports: Mapping[str, int] | None = None
+        self, server: SimServer, interface: str = LOOPBACK_ADDRESS, ports: Mapping[str, int] | None = None
     ) -> None:
         self._server = server
         self._clients: list[_Client] = []
-        wanted = ports or {name: getattr(server.endpoints, name) for name in _TEAMS}
+        wanted = ports or {name: getattr(server.endpoints, name) for name in _TEAM_PORTS}
         with ExitStack() as opened:
             self._listening = {
-                name: opened.enter_context(socket.create_server((interface, wanted[name]))) for name in _TEAMS
+                name: opened.enter_context(socket.create_server((interface, wanted[name])))
+                for name in _TEAM_PORTS
             }
             self._opened = opened.pop_all()
         self.ports: dict[str, int] = {name: sock.getsockname()[1] for name, sock in self._listening.items()}
@@ -113,12 +114,12 @@ class StepServer(Closing):
                     selector.register(client.stream, selectors.EVENT_READ)
             for listening in self._listening.values():
                 selector.register(listening, selectors.EVENT_READ)
-            ready = [key.fileobj for key, _ in selector.select(_LISTENS)]
+            ready = [key.fileobj for key, _ in selector.select(_STOP_POLL)]
         for name, listening in self._listening.items():
             if listening in ready:
                 connection, _ = listening.accept()
                 self._clients.append(_Client(MessageStream(connection, f"a client at {name}"), name))
-                self._clients.sort(key=lambda client: list(_TEAMS).index(client.name))
+                self._clients.sort(key=lambda client: list(_TEAM_PORTS).index(client.name))
 
     def _receive(self, client: _Client) -> None:
         try:
@@ -145,9 +146,10 @@ class StepServer(Closing):
         for client, answer in zip(self._clients, answers, strict=True):
             asked = 0.0 if client.request is None else client.request.sim_step
             # NaN compares as false.
-            if not 0.0 <= asked <= _LONGEST or abs(asked / period - round(asked / period)) > 1e-3:
+            if not 0.0 <= asked <= _LONGEST_CLIENT_STEP or abs(asked / period - round(asked / period)) > 1e-3:
                 answer.errors.add(
-                    code=NO_STEP, message=f"a step is a multiple of {period:.6f} s, at most {_LONGEST:g} s"
+                    code=NO_STEP,
+                    message=f"a step is a multiple of {period:.6f} s, at most {_LONGEST_CLIENT_STEP:g} s",
                 )
             else:
                 steps = max(steps, round(asked / period))
@@ -172,7 +174,7 @@ class StepServer(Closing):
                 )
             else:
                 answer.errors.MergeFrom(done.errors)
-        team = _TEAMS[client.name]
+        team = _TEAM_PORTS[client.name]
         if not request.HasField("robot_control"):
             return answer
         if team is None:
@@ -186,7 +188,7 @@ class StepServer(Closing):
         return answer
 
     def _answer(self, client: _Client, answer: RobotControlResponse, frames: list[CameraFrame]) -> None:
-        team = _TEAMS[client.name]
+        team = _TEAM_PORTS[client.name]
         robots = {} if team is None else self._server.field.truth().robots()
         contacts = {robot.number: state.ball_contact for robot, state in robots.items() if robot.team is team}
         for feedback in answer.feedback:

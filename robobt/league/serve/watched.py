@@ -5,7 +5,7 @@ from __future__ import annotations
 from robobt.league.serve.referee import ServedReferee
 from robobt.league.serve.served_field import ServedField
 from robobt.league.wire.commands import BallTeleport, Teleport
-from robobt.live.grip import Grip
+from robobt.live.grip import HeldObjects
 from robobt.live.messages import Act, MoveBall, MoveRobot, TakeOff, robot_of
 from robobt.live.server import Server
 from robobt.live.stream import Stream
@@ -27,7 +27,7 @@ class WatchedField:
         self._server, self._name, self._referee = server, name, referee
         self._capture: Capture | None = None
         self._robots: frozenset[RobotId] = frozenset()
-        self._grip = Grip()
+        self._grip = HeldObjects()
         server.tell(paused=False, speed=1.0, movable=True, orders=False, plays=[], over=None, span=None)
 
     def __call__(self, field: ServedField) -> None:

@@ -15,12 +15,12 @@ from robobt.world.geometry import limit_norm
 from robobt.world.limits import RobotLimits
 from robobt.world.state import RobotId
 
-_WHEELS = (60.0, 135.0, 225.0, 300.0)
+_WHEEL_DIRECTIONS = (60.0, 135.0, 225.0, 300.0)
 """Directions of grSim's wheels from straight ahead [deg]: front left, back left, back right, front right."""
 
 # Velocity (forward, left, angular) from the wheels' surface speeds.
 _FROM_WHEELS = np.linalg.pinv(
-    np.array([[-sin(radians(a)), cos(radians(a)), 0.09] for a in _WHEELS], dtype=np.float64)
+    np.array([[-sin(radians(a)), cos(radians(a)), 0.09] for a in _WHEEL_DIRECTIONS], dtype=np.float64)
 )
 
 

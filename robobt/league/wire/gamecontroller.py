@@ -12,7 +12,7 @@ from robobt.league.wire.gameevents import read_event
 from robobt.league.wire.messages import GameEvent
 from robobt.league.wire.messages import Referee as RefereeMessage
 from robobt.league.wire.notices import Notices
-from robobt.league.wire.packets import MAX_OBJECTS, PacketCounts
+from robobt.league.wire.packets import MAX_OBJECTS, MM_PER_M, PacketCounts
 from robobt.league.wire.referee_message import (
     ReadMessage,
     clear_nonsense,
@@ -26,8 +26,6 @@ from robobt.world.game import GameState, RefereeCommand, Restart, Stage, Team, T
 from robobt.world.geometry import Point, distance
 from robobt.world.rules import IN_PLAY_DISTANCE
 from robobt.world.state import Frame
-
-_MM = 1000.0
 
 _KICK_TIMEOUT = 10.0
 """Time after which an untaken restart is over, if the controller does not send the time left [s]."""
@@ -43,7 +41,7 @@ _RESTARTS = {
     for team in Team
 }
 
-_AT_ONCE = frozenset({Restart.FREE_KICK, Restart.BALL_PLACEMENT})
+_IMMEDIATE_RESTARTS = frozenset({Restart.FREE_KICK, Restart.BALL_PLACEMENT})
 """Restarts that may be taken without NORMAL_START."""
 
 
@@ -117,7 +115,7 @@ class RefereeFollower:
         placement: Point | None = None
         if message.HasField("designated_position"):
             spot = message.designated_position
-            placement = (spot.x / _MM, spot.y / _MM)
+            placement = (spot.x / MM_PER_M, spot.y / MM_PER_M)
         if message.HasField("packet_timestamp"):
             self.sent = message.packet_timestamp / 1e6
         events = list(message.game_events)
@@ -194,7 +192,7 @@ class RefereeFollower:
         before = self.game
         self._ready = None
         restart, team = _RESTARTS.get(command, (None, None))
-        may_touch = restart in _AT_ONCE
+        may_touch = restart in _IMMEDIATE_RESTARTS
         if command is RefereeCommand.NORMAL_START and not before.may_touch:
             # The kick that was prepared may now be taken.
             restart, team, placement, may_touch = before.restart, before.restart_team, before.placement, True

@@ -12,15 +12,13 @@ from google.protobuf.descriptor import FieldDescriptor
 
 from robobt.config.errors import one_line
 from robobt.league.wire.messages import GameEvent, Message
-from robobt.league.wire.packets import MAX_ROBOT_NUMBER, on_field
+from robobt.league.wire.packets import MAX_ROBOT_NUMBER, MICROSECONDS_PER_S, on_field
 from robobt.league.wire.simulation import TEAMS
 from robobt.match.referee.events import Detail, EventKind, RefereeEvent
 from robobt.world.game import Team
 from robobt.world.state import RobotId
 
-_MICROSECONDS = 1e6
-
-_NUMBERS = {team: number for number, team in TEAMS.items()}
+_EVENT_TEAM_NUMBERS = {team: number for number, team in TEAMS.items()}
 
 _OFFENDER = ("by_bot", "violator", "kicking_bot")
 """Names in messages of the robot that caused an event."""
@@ -38,7 +36,7 @@ def write_event(event: RefereeEvent, epoch: float, origin: str) -> GameEvent:
         origin: who saw it.
     """
     message = GameEvent(type=event.kind.name, origin=[origin])
-    message.created_timestamp = round((epoch + event.time) * _MICROSECONDS)
+    message.created_timestamp = round((epoch + event.time) * MICROSECONDS_PER_S)
     body: Message = getattr(message, event.kind.value)
     body.SetInParent()
     names = body.DESCRIPTOR.fields_by_name
@@ -47,7 +45,7 @@ def write_event(event: RefereeEvent, epoch: float, origin: str) -> GameEvent:
         values |= dict.fromkeys(_OFFENDER, event.robot.number)
     if "by_team" in names:
         # Required in the message even if no robot caused it.
-        body.by_team = 0 if event.team is None else _NUMBERS[event.team]
+        body.by_team = 0 if event.team is None else _EVENT_TEAM_NUMBERS[event.team]
     for name, value in (values | dict(event.details)).items():
         if name not in names or value is None:
             continue
@@ -55,9 +53,9 @@ def write_event(event: RefereeEvent, epoch: float, origin: str) -> GameEvent:
             point = getattr(body, name)
             point.x, point.y = value
         elif name in _TIMES and isinstance(value, float):
-            setattr(body, name, round((epoch + value) * _MICROSECONDS))
+            setattr(body, name, round((epoch + value) * MICROSECONDS_PER_S))
         else:
-            setattr(body, name, _NUMBERS[value] if isinstance(value, Team) else value)
+            setattr(body, name, _EVENT_TEAM_NUMBERS[value] if isinstance(value, Team) else value)
     return message
 
 
@@ -71,7 +69,7 @@ def read_event(message: GameEvent, epoch: float, now: float) -> RefereeEvent | N
         epoch: Unix time at which the simulated time was 0 [s].
         now: the simulated time, for an event that does not say when it happened [s].
     """
-    kind = _KINDS.get(int(message.type))
+    kind = _EVENT_KINDS.get(int(message.type))
     if kind is None:
         return None
     values = _fields(getattr(message, kind.value), epoch)
@@ -86,11 +84,11 @@ def read_event(message: GameEvent, epoch: float, now: float) -> RefereeEvent | N
     if isinstance(kicking, Team) and isinstance(number, int) and 0 <= number <= MAX_ROBOT_NUMBER:
         robot = RobotId(kicking, number)
     told = message.HasField("created_timestamp")
-    time = message.created_timestamp / _MICROSECONDS - epoch if told else now
+    time = message.created_timestamp / MICROSECONDS_PER_S - epoch if told else now
     return RefereeEvent(time, kind, team if isinstance(team, Team) else None, robot, x, y, values)
 
 
-_KINDS = {GameEvent.Type.Value(kind.name): kind for kind in EventKind}
+_EVENT_KINDS = {GameEvent.Type.Value(kind.name): kind for kind in EventKind}
 
 
 def _fields(body: Message, epoch: float) -> dict[str, Detail]:
@@ -109,7 +107,7 @@ def _fields(body: Message, epoch: float) -> dict[str, Detail]:
             # What is no UTF-8 is left as bytes.
             found[name] = one_line(value if isinstance(value, str) else value.decode(errors="replace"))
         elif name in _TIMES:
-            found[name] = value / _MICROSECONDS - epoch
+            found[name] = value / MICROSECONDS_PER_S - epoch
         elif isfinite(value):
             found[name] = value
     return found

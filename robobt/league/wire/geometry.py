@@ -17,14 +17,12 @@ from robobt.league.wire.messages import (
     SSL_GeometryData,
     SSL_GeometryFieldSize,
 )
-from robobt.league.wire.packets import on_field
+from robobt.league.wire.packets import MM_PER_M, on_field
 from robobt.sim.settings import BallSettings
 from robobt.world.field import DIVISION_A, DIVISION_B, FieldGeometry
 from robobt.world.geometry import Point
 from robobt.world.presence import GOAL_SUBSTITUTION_WIDTH
 from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS
-
-_MM = 1000.0
 
 _LINE_THICKNESS = 0.01
 """Width of the field's lines [m]. Source: RoboCup SSL rules."""
@@ -62,7 +60,7 @@ def read_cameras(message: SSL_GeometryData) -> dict[int, CameraPlace]:
             )
         else:
             place = _origin(camera)
-        x, y, z = (value / _MM for value in place)
+        x, y, z = (value / MM_PER_M for value in place)
         # NaN compares as false.
         if on_field(x, y) and _CEILING[0] <= z <= _CEILING[1]:
             found[camera.camera_id] = CameraPlace(x, y, z)
@@ -97,31 +95,33 @@ def read_field(message: SSL_GeometryFieldSize) -> FieldGeometry | None:
     Sizes that the packet leaves out are taken from the field's lines and arcs, or
     else from the division whose length is nearest.
     """
-    length, width = message.field_length / _MM, message.field_width / _MM
+    length, width = message.field_length / MM_PER_M, message.field_width / MM_PER_M
     division = min((DIVISION_A, DIVISION_B), key=lambda division: abs(division.length - length))
-    depth, across = message.penalty_area_depth / _MM, message.penalty_area_width / _MM
+    depth, across = message.penalty_area_depth / MM_PER_M, message.penalty_area_width / MM_PER_M
     lines = {line.name: line for line in message.field_lines}
     # As the game controller does; grSim's front line lies half its thickness off.
     side, front = lines.get("LeftFieldLeftPenaltyStretch"), lines.get("LeftPenaltyStretch")
     if not message.HasField("penalty_area_depth"):
-        depth = division.defense_depth if side is None else abs(side.p1.x - side.p2.x) / _MM
+        depth = division.defense_depth if side is None else abs(side.p1.x - side.p2.x) / MM_PER_M
     if not message.HasField("penalty_area_width"):
-        across = division.defense_width if front is None else abs(front.p1.y - front.p2.y) / _MM
-    radius = message.center_circle_radius / _MM
+        across = division.defense_width if front is None else abs(front.p1.y - front.p2.y) / MM_PER_M
+    radius = message.center_circle_radius / MM_PER_M
     if not message.HasField("center_circle_radius"):
         circles = [arc for arc in message.field_arcs if arc.name == "CenterCircle"]
         # An arc is the middle of its line.
-        radius = (circles[0].radius + circles[0].thickness / 2) / _MM if circles else division.center_radius
-    goal_depth = message.goal_depth / _MM or division.goal_depth
-    least, margin = max(goal_depth, 0.2), message.boundary_width / _MM
+        radius = (
+            (circles[0].radius + circles[0].thickness / 2) / MM_PER_M if circles else division.center_radius
+        )
+    goal_depth = message.goal_depth / MM_PER_M or division.goal_depth
+    least, margin = max(goal_depth, 0.2), message.boundary_width / MM_PER_M
     behind = margin
     if message.HasField("boundary_width_goal_line"):
-        behind = message.boundary_width_goal_line / _MM
+        behind = message.boundary_width_goal_line / MM_PER_M
     try:
         return FieldGeometry(
             length=length,
             width=width,
-            goal_width=message.goal_width / _MM,
+            goal_width=message.goal_width / MM_PER_M,
             goal_depth=goal_depth,
             defense_width=across,
             defense_depth=depth,
@@ -169,24 +169,24 @@ def _write_size(size: SSL_GeometryFieldSize, field: FieldGeometry) -> None:
     size.goal_center_to_penalty_mark = _mm(field.penalty_distance)
     size.center_circle_radius = _mm(field.center_radius)
     size.line_thickness = _mm(_LINE_THICKNESS)
-    size.ball_radius = BALL_RADIUS * _MM
-    size.max_robot_radius = ROBOT_RADIUS * _MM
+    size.ball_radius = BALL_RADIUS * MM_PER_M
+    size.max_robot_radius = ROBOT_RADIUS * MM_PER_M
     for kind, (name, x1, y1, x2, y2) in _lines(field):
         line = size.field_lines.add(
             name=name,
-            p1={"x": x1 * _MM, "y": y1 * _MM},
-            p2={"x": x2 * _MM, "y": y2 * _MM},
-            thickness=_LINE_THICKNESS * _MM,
+            p1={"x": x1 * MM_PER_M, "y": y1 * MM_PER_M},
+            p2={"x": x2 * MM_PER_M, "y": y2 * MM_PER_M},
+            thickness=_LINE_THICKNESS * MM_PER_M,
         )
         if kind is not None:
             line.type = kind
     size.field_arcs.add(
         name="CenterCircle",
         center={"x": 0.0, "y": 0.0},
-        radius=(field.center_radius - _LINE_THICKNESS / 2) * _MM,
+        radius=(field.center_radius - _LINE_THICKNESS / 2) * MM_PER_M,
         a1=0.0,
         a2=2 * pi,
-        thickness=_LINE_THICKNESS * _MM,
+        thickness=_LINE_THICKNESS * MM_PER_M,
         type=1,
     )
 
@@ -204,19 +204,19 @@ def _write_camera(message: SSL_GeometryData, number: int, x: float, y: float) ->
         q1=0.0,
         q2=0.0,
         q3=0.0,
-        tx=-x * _MM,
-        ty=y * _MM,
-        tz=CAMERA_HEIGHT * _MM,
-        derived_camera_world_tx=x * _MM,
-        derived_camera_world_ty=y * _MM,
-        derived_camera_world_tz=CAMERA_HEIGHT * _MM,
+        tx=-x * MM_PER_M,
+        ty=y * MM_PER_M,
+        tz=CAMERA_HEIGHT * MM_PER_M,
+        derived_camera_world_tx=x * MM_PER_M,
+        derived_camera_world_ty=y * MM_PER_M,
+        derived_camera_world_tz=CAMERA_HEIGHT * MM_PER_M,
         pixel_image_width=_IMAGE[0],
         pixel_image_height=_IMAGE[1],
     )
 
 
 def _mm(metres: float) -> int:
-    return round(metres * _MM)
+    return round(metres * MM_PER_M)
 
 
 _Line = tuple[str, float, float, float, float]

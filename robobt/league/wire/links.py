@@ -11,7 +11,7 @@ from robobt.league.wire.endpoints import Endpoints
 from robobt.league.wire.grsim import read_status, write_grsim, write_grsim_replacement
 from robobt.league.wire.packets import PacketCounts
 from robobt.league.wire.simulation import read_feedback, write_control, write_teleport
-from robobt.league.wire.sockets import LOOPBACK, Receiver, Sender
+from robobt.league.wire.sockets import LOOPBACK_ADDRESS, Receiver, Sender
 from robobt.world.command import RobotCommand
 from robobt.world.game import Team
 from robobt.world.state import RobotId
@@ -97,7 +97,7 @@ class GrSimLink(_SimulatorLink):
         ports = {Team.BLUE: endpoints.blue_status, Team.YELLOW: endpoints.yellow_status}
         for team, port in ports.items():
             try:
-                receiver = Receiver(interface or LOOPBACK, port, interface)
+                receiver = Receiver(interface or LOOPBACK_ADDRESS, port, interface)
             except OSError as error:
                 # Ball contact is then inferred from the vision.
                 if team in teams:

@@ -23,6 +23,13 @@ MAX_ROBOT_NUMBER = 31
 MAX_TIME = 1e10
 """Largest timestamp [s]: beyond it a double no longer separates two frames."""
 
+MM_PER_M = 1000.0
+"""Millimetres in a metre."""
+
+MICROSECONDS_PER_S = 1e6
+"""Microseconds in a second."""
+
+
 _M = TypeVar("_M", bound=Message)
 _T = TypeVar("_T")
 

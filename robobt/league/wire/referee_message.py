@@ -15,13 +15,12 @@ from robobt.league.wire.packets import (
     MAX_PACKET,
     MAX_ROBOT_NUMBER,
     MAX_TIME,
+    MICROSECONDS_PER_S,
+    MM_PER_M,
     PacketCounts,
     on_field,
 )
 from robobt.world.game import RefereeCommand
-
-_MM = 1000.0
-_MICROSECONDS = 1e6
 
 LONGEST = 65_535
 """Longest packet that is read [bytes]: there is no longer one, and a HALT may be in it."""
@@ -29,18 +28,18 @@ LONGEST = 65_535
 _LONGEST_TIME = 86_400.0
 """No stage or action takes longer [s]."""
 
-_MOST = 99
+_MOST_GOALS_OR_CARDS = 99
 """No team has more goals or cards."""
 
 _TEAM_LIMITS = {
-    "score": _MOST,
-    "red_cards": _MOST,
+    "score": _MOST_GOALS_OR_CARDS,
+    "red_cards": _MOST_GOALS_OR_CARDS,
     "goalkeeper": MAX_ROBOT_NUMBER,
     "max_allowed_bots": MAX_ROBOT_NUMBER + 1,
 }
 """Largest values of a team's fields."""
 
-_MOST_FIELDS = 256
+_MOST_BROKEN_FIELDS = 256
 """Number of fields read of a broken message: messages have about 15, and one for each game event."""
 
 # No longer sent, but found in old logs.
@@ -133,22 +132,22 @@ def read_message(data: bytes, counts: PacketCounts) -> ReadMessage | None:
 def clear_nonsense(message: RefereeMessage) -> list[str]:
     """Clear the fields whose values cannot be, and return their names; unknown values of enums are named."""
     odd = [_ENUMS[field.field_number] for field in UnknownFieldSet(message) if field.field_number in _ENUMS]
-    if message.packet_timestamp / _MICROSECONDS > MAX_TIME:
+    if message.packet_timestamp / MICROSECONDS_PER_S > MAX_TIME:
         _clear(message, "packet_timestamp", odd)
     for time in ("stage_time_left", "current_action_time_remaining"):
-        if abs(getattr(message, time)) / _MICROSECONDS > _LONGEST_TIME:
+        if abs(getattr(message, time)) / MICROSECONDS_PER_S > _LONGEST_TIME:
             _clear(message, time, odd)
     if message.HasField("designated_position"):
         spot = message.designated_position
         named = spot.HasField("x") and spot.HasField("y")
-        if not (named and on_field(spot.x / _MM, spot.y / _MM)):
+        if not (named and on_field(spot.x / MM_PER_M, spot.y / MM_PER_M)):
             _clear(message, "designated_position", odd)
     for team in ("blue", "yellow"):
         info = getattr(message, team)
         for field, most in _TEAM_LIMITS.items():
             if getattr(info, field) > most:
                 _clear(info, field, odd, f"{team}.")
-        if len(info.yellow_card_times) > _MOST:
+        if len(info.yellow_card_times) > _MOST_GOALS_OR_CARDS:
             _clear(info, "yellow_card_times", odd, f"{team}.")
     events = [event for event in message.game_events[:MAX_OBJECTS] if event.HasField("type")]
     if len(events) < len(message.game_events):
@@ -198,7 +197,7 @@ def _stop_in(data: bytes) -> RefereeCommand | None:
 def _fields(data: bytes) -> Iterator[tuple[int, int, int]]:
     """Yield where each outer field of a message starts, has its value and ends, until one makes no sense."""
     start = 0
-    for _ in range(_MOST_FIELDS):
+    for _ in range(_MOST_BROKEN_FIELDS):
         value = _past_varint(data, start)
         if value is None or data[start] < 1 << 3:
             return

@@ -6,10 +6,9 @@ from collections.abc import Mapping, Sequence
 
 from robobt.league.wire.messages import GameEvent
 from robobt.league.wire.messages import Referee as RefereeMessage
+from robobt.league.wire.packets import MM_PER_M
 from robobt.league.wire.tracker import SOURCE
 from robobt.world.game import GameState, RefereeCommand, Restart, Team
-
-_MM = 1000.0
 
 
 class RefereePublisher:
@@ -61,8 +60,8 @@ class RefereePublisher:
             if status.max_robots is not None:
                 info.max_allowed_bots = status.max_robots
         if game.placement is not None:
-            message.designated_position.x = game.placement[0] * _MM
-            message.designated_position.y = game.placement[1] * _MM
+            message.designated_position.x = game.placement[0] * MM_PER_M
+            message.designated_position.y = game.placement[1] * MM_PER_M
         if game.upcoming is not None:
             message.next_command = RefereeMessage.Command.Value(game.upcoming.name)
         if game.action_time is not None:

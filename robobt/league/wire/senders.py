@@ -9,7 +9,7 @@ from typing import Generic, TypeVar
 Address = tuple[str, int]
 """Host and port of a sender."""
 
-SILENCE = 2.0
+SENDER_SILENCE = 2.0
 """Another sender is followed once the present one has been silent for this long [s]."""
 
 
@@ -22,7 +22,7 @@ class FirstSender(Generic[_S]):
     ``sender`` is the one that is followed, None before the first.
     """
 
-    def __init__(self, silence: float = SILENCE) -> None:
+    def __init__(self, silence: float = SENDER_SILENCE) -> None:
         self.sender: _S | None = None
         self._silence, self._heard = silence, -inf
 

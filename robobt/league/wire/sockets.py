@@ -18,13 +18,13 @@ from robobt.config.errors import RobobtError
 from robobt.league.wire.packets import MAX_PACKET, PacketCounts
 from robobt.league.wire.senders import Address
 
-LOOPBACK = "127.0.0.1"
+LOOPBACK_ADDRESS = "127.0.0.1"
 """Address of the interface whose packets stay on this machine."""
 
-BATCH = 256
+MOST_DATAGRAMS = 256
 """Most datagrams read in one go, so that a flood cannot starve the caller."""
 
-_BUFFER = 1 << 20
+_RECEIVE_BUFFER = 1 << 20
 """Size of the kernel's receive buffer [bytes]."""
 
 # Linux constants that the socket module of Python 3.11 lacks.
@@ -59,7 +59,7 @@ class _UdpSocket(Closing):
 
     def _read(self) -> Iterator[tuple[bytes, list[tuple[int, int, bytes]], int, tuple[str, int]]]:
         """Yield data, ancillary data, flags and sender of the waiting datagrams, at most a batch."""
-        for _ in range(BATCH):
+        for _ in range(MOST_DATAGRAMS):
             try:
                 if sys.platform == "win32":  # which has no recvmsg, and drops a longer datagram itself
                     data, sender = self._socket.recvfrom(self._longest)
@@ -121,7 +121,7 @@ class Receiver(_UdpSocket):
 
     def _bind(self, address: str, port: int, interface: str | None, group: bool) -> None:
         sock, linux = self._socket, sys.platform == "linux"
-        sock.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, _BUFFER)
+        sock.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, _RECEIVE_BUFFER)
         if linux:
             sock.setsockopt(socket.IPPROTO_IP, _IP_PKTINFO, 1)
         if group:
@@ -131,7 +131,7 @@ class Receiver(_UdpSocket):
         if group:
             if linux:
                 sock.setsockopt(socket.IPPROTO_IP, _IP_MULTICAST_ALL, 0)
-            for own in [interface] if interface is not None else {LOOPBACK: 0, **_addresses()}:
+            for own in [interface] if interface is not None else {LOOPBACK_ADDRESS: 0, **_addresses()}:
                 self._join(address, own)
 
     def fileno(self) -> int:
@@ -184,7 +184,7 @@ class Sender(_UdpSocket):
         ValueError: ``address`` is not an IPv4 address.
     """
 
-    def __init__(self, address: str, port: int, interface: str = LOOPBACK) -> None:
+    def __init__(self, address: str, port: int, interface: str = LOOPBACK_ADDRESS) -> None:
         group = IPv4Address(address).is_multicast
         super().__init__()
         self._to = (address, port)
@@ -227,7 +227,7 @@ def _can_bind(address: str) -> bool:
 def _addresses() -> dict[str, int]:
     """Return own address and index of every interface that has an address."""
     if sys.platform != "linux":
-        return {LOOPBACK: 0}
+        return {LOOPBACK_ADDRESS: 0}
     import fcntl  # not available on every platform
 
     found = {}

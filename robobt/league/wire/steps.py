@@ -20,7 +20,7 @@ from robobt.world.state import RobotId
 NO_STEP = "SIM_STEP"
 """Code of the error that is the answer to a step that cannot be made."""
 
-_PATIENCE = 60.0
+_ANSWER_TIMEOUT = 60.0
 """How long an answer is waited for: the other side may have to wait for the other team [s]."""
 
 
@@ -55,7 +55,9 @@ class StepLink(Link):
             port = endpoints.blue if team is Team.BLUE else endpoints.yellow
             where = f"the simulator at {host}:{port}"
             try:
-                self._streams[team] = MessageStream(socket.create_connection((host, port), _PATIENCE), where)
+                self._streams[team] = MessageStream(
+                    socket.create_connection((host, port), _ANSWER_TIMEOUT), where
+                )
             except OSError as error:
                 self.close()
                 raise StreamError(f"{where} cannot be reached: {error.strerror or error}") from error
@@ -95,7 +97,7 @@ class StepLink(Link):
         self._commands = {}
         frames: list[CameraFrame] = []
         for team, stream in self._streams.items():
-            data, counts = stream.receive(_PATIENCE), self.counts[f"{team.value}_steps"]
+            data, counts = stream.receive(_ANSWER_TIMEOUT), self.counts[f"{team.value}_steps"]
             answer = None if data is None else decode(SimulationSyncResponse, data, counts)
             if answer is None:
                 raise StreamError(f"the simulator does not answer a step of {team.value}'s")

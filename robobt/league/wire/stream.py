@@ -17,7 +17,7 @@ MAX_MESSAGE = 1 << 20
 
 _CHUNK = 65536
 
-_PATIENCE = 10.0
+_SEND_TIMEOUT = 10.0
 """Time without reading after which the other side counts as stopped [s]."""
 
 
@@ -51,11 +51,11 @@ class MessageStream(Closing):
         Raises:
             StreamError: the connection is closed, or the other side does not read.
         """
-        self._socket.settimeout(_PATIENCE)
+        self._socket.settimeout(_SEND_TIMEOUT)
         try:
             self._socket.sendall(encode_varint(len(message)) + message)
         except TimeoutError as error:
-            raise StreamError(f"{self._peer} has read nothing for {_PATIENCE:g} s") from error
+            raise StreamError(f"{self._peer} has read nothing for {_SEND_TIMEOUT:g} s") from error
         except OSError as error:
             raise StreamError(f"{self._peer} closed the connection") from error
 

@@ -11,10 +11,10 @@ from robobt.world.game import Team
 from robobt.world.geometry import wrap_angle
 from robobt.world.state import BALL_RADIUS, BallState, Frame, RobotState
 
-_MAX_SPEED = 30.0
+_MAX_TRACKED_SPEED = 30.0
 """Nothing on a field is faster [m/s]."""
 
-_MAX_HEIGHT = 10.0
+_MAX_TRACKED_HEIGHT = 10.0
 """No ball flies higher [m]."""
 
 _MAX_TURN = 300.0
@@ -114,10 +114,10 @@ def _robot(robot: TrackedRobot) -> RobotState | None:
 
 def _plausible_ball(ball: BallState) -> bool:
     # NaN compares as false.
-    in_the_air = -BALL_RADIUS <= ball.z <= _MAX_HEIGHT and abs(ball.vz) <= _MAX_SPEED
+    in_the_air = -BALL_RADIUS <= ball.z <= _MAX_TRACKED_HEIGHT and abs(ball.vz) <= _MAX_TRACKED_SPEED
     return in_the_air and _plausible(ball.x, ball.y, ball.vx, ball.vy)
 
 
 def _plausible(x: float, y: float, vx: float, vy: float) -> bool:
     # NaN compares as false.
-    return on_field(x, y) and abs(vx) <= _MAX_SPEED and abs(vy) <= _MAX_SPEED
+    return on_field(x, y) and abs(vx) <= _MAX_TRACKED_SPEED and abs(vy) <= _MAX_TRACKED_SPEED

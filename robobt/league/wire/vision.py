@@ -11,15 +11,21 @@ from math import isfinite, pi
 
 from robobt.league.wire.geometry import CameraPlace, read_cameras, read_field
 from robobt.league.wire.messages import SSL_DetectionFrame, SSL_GeometryData, SSL_WrapperPacket
-from robobt.league.wire.packets import MAX_OBJECTS, MAX_ROBOT_NUMBER, MAX_TIME, PacketCounts, on_field, read
+from robobt.league.wire.packets import (
+    MAX_OBJECTS,
+    MAX_ROBOT_NUMBER,
+    MAX_TIME,
+    MM_PER_M,
+    PacketCounts,
+    on_field,
+    read,
+)
 from robobt.world.field import FieldGeometry
 from robobt.world.game import Team
 from robobt.world.geometry import wrap_angle
 from robobt.world.state import BallState, RobotId
 
-_MM = 1000.0
-
-_MAX_CAMERAS = 64
+_CAMERA_ID_LIMIT = 64
 
 _MAX_LATENCY = 1.0
 """Longest plausible time from capture to sending [s]; beyond it the frame counts as sent when captured."""
@@ -112,7 +118,7 @@ def read_frame(message: SSL_DetectionFrame) -> CameraFrame | None:
     """
     captured, sent = message.t_capture, message.t_sent
     # NaN compares as false.
-    if not (abs(captured) <= MAX_TIME and abs(sent) <= MAX_TIME and message.camera_id < _MAX_CAMERAS):
+    if not (abs(captured) <= MAX_TIME and abs(sent) <= MAX_TIME and message.camera_id < _CAMERA_ID_LIMIT):
         return None
     if max(len(message.balls), len(message.robots_blue), len(message.robots_yellow)) > MAX_OBJECTS:
         return None
@@ -120,12 +126,12 @@ def read_frame(message: SSL_DetectionFrame) -> CameraFrame | None:
         sent = captured
     frame = CameraFrame(message.camera_id, message.frame_number, captured, sent)
     for ball in message.balls:
-        x, y, confidence = ball.x / _MM, ball.y / _MM, ball.confidence
+        x, y, confidence = ball.x / MM_PER_M, ball.y / MM_PER_M, ball.confidence
         if on_field(x, y) and isfinite(confidence):
             frame.balls.append(BallDetection(x, y, min(confidence, 1.0)))
     for team, robots in ((Team.BLUE, message.robots_blue), (Team.YELLOW, message.robots_yellow)):
         for robot in robots:
-            x, y, confidence = robot.x / _MM, robot.y / _MM, robot.confidence
+            x, y, confidence = robot.x / MM_PER_M, robot.y / MM_PER_M, robot.confidence
             if not robot.HasField("robot_id") or robot.robot_id > MAX_ROBOT_NUMBER:
                 continue
             if not (on_field(x, y) and isfinite(confidence)):
@@ -147,8 +153,8 @@ def write_frame(frame: CameraFrame) -> SSL_DetectionFrame:
         message.balls.add(
             confidence=ball.confidence,
             area=_BALL_AREA,
-            x=ball.x * _MM,
-            y=ball.y * _MM,
+            x=ball.x * MM_PER_M,
+            y=ball.y * MM_PER_M,
             z=0.0,
             pixel_x=0.0,
             pixel_y=0.0,
@@ -158,11 +164,11 @@ def write_frame(frame: CameraFrame) -> SSL_DetectionFrame:
         added = robots.add(
             confidence=robot.confidence,
             robot_id=robot.robot.number,
-            x=robot.x * _MM,
-            y=robot.y * _MM,
+            x=robot.x * MM_PER_M,
+            y=robot.y * MM_PER_M,
             pixel_x=0.0,
             pixel_y=0.0,
-            height=_PATTERN_HEIGHT * _MM,
+            height=_PATTERN_HEIGHT * MM_PER_M,
         )
         if robot.heading is not None:
             added.orientation = robot.heading

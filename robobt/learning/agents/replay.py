@@ -40,7 +40,7 @@ class Batch:
     rows: NDArray[np.int64]
 
 
-class Replay:
+class ReplayBuffer:
     """A ring buffer of transitions after an optional part that is never overwritten.
 
     Every row is packed as observation, action, then for each horizon reward,
@@ -122,7 +122,7 @@ class Replay:
         self._rows[: self._filled] = state["rows"]
 
 
-class PrioritisedReplay(Replay):
+class PrioritisedReplay(ReplayBuffer):
     """A replay that samples the rows with large errors more often.
 
     P(i) = p_i^alpha / sum, and importance weights (N P(i))^-beta, the largest of a
@@ -154,7 +154,7 @@ class PrioritisedReplay(Replay):
         self._largest = 1.0
 
     def add(self, *transitions: Transitions) -> NDArray[np.int64]:
-        """Append transitions with the largest priority yet; see :meth:`Replay.add`."""
+        """Append transitions with the largest priority yet; see :meth:`ReplayBuffer.add`."""
         rows = super().add(*transitions)
         self._tree.set(rows, np.full(len(rows), self._largest**self._alpha))
         return rows

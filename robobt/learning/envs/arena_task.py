@@ -19,7 +19,7 @@ from robobt.learning.envs.progress import PROGRESS, progress_at
 from robobt.learning.envs.randomiser import Randomiser
 from robobt.learning.envs.settings import TaskSettings
 from robobt.learning.envs.starts import START_COLUMNS, StartPool, check_starts, columns_of, split
-from robobt.learning.envs.task import BoolArray, Ends, FloatArray, IntArray, StepResult
+from robobt.learning.envs.task import BoolArray, EpisodeEnds, FloatArray, IntArray, StepResult
 from robobt.learning.envs.tick import Tick, call, checked_starts, checked_terms, end_by, error_of
 from robobt.models.actions import fill_commands
 from robobt.sim.arenas import Arenas
@@ -175,7 +175,7 @@ class ArenaTask:
     def begin(self, starts: FloatArray, which: IntArray) -> None:
         """Read the columns after robots and ball from the ``starts`` (m, S) of the arenas ``which``."""
 
-    def _judge(self, actions: FloatArray, rewards: FloatArray, ends: Ends) -> bool:  # noqa: ARG002
+    def _judge(self, actions: FloatArray, rewards: FloatArray, ends: EpisodeEnds) -> bool:  # noqa: ARG002
         """Add a tick's reward to ``rewards`` (n,) and fill ``ends``; return whether any episode has ended.
 
         Episodes that have already ended stay unchanged. Tasks with compiled rewards and ends override this;
@@ -271,7 +271,7 @@ class ArenaTask:
         """The terms of the episodes so far, (n,)."""
         return self._judged_terms if self._own_terms is None else self._own_terms
 
-    def _ledger(self, rewards: FloatArray, ends: Ends) -> Ledger:
+    def _ledger(self, rewards: FloatArray, ends: EpisodeEnds) -> Ledger:
         """Return the arguments of a compiled judge as a plain tuple."""
         return cast(Ledger, (self._progress_rows, self._term_rows, rewards, *ends))
 
@@ -366,7 +366,7 @@ class ArenaTask:
             raise ValueError("an action is not finite")
         self._commands[:, self.learners] = filled.reshape(self.n, each, filled.shape[-1])
         rewards = np.zeros(self.n)
-        ends = Ends.none(self.n)
+        ends = EpisodeEnds.none(self.n)
         last = self.settings.decide_every - 1
         for tick in range(self.settings.decide_every):
             if not self._own_opponents:
@@ -398,7 +398,7 @@ class ArenaTask:
         aside[:, learners] = np.where(self.arenas.contact[:, learners], slow, aside[:, learners])
         return commands
 
-    def _step_with_own(self, actions: FloatArray, rewards: FloatArray, ends: Ends) -> bool:
+    def _step_with_own(self, actions: FloatArray, rewards: FloatArray, ends: EpisodeEnds) -> bool:
         """Step a tick and judge it by :meth:`reward` and :meth:`ends` if a subclass defines them."""
         arenas, progress, blue = self.arenas, self._progress, self.blue
         field, going = self.settings.field, ~ends.over
@@ -480,7 +480,7 @@ class ArenaTask:
         self._announce(seen, which)
         return seen
 
-    def _collect(self, which: IntArray, ends: Ends) -> Episodes:
+    def _collect(self, which: IntArray, ends: EpisodeEnds) -> Episodes:
         progress, period = self._progress[which], self.settings.period
         kick, ticks = progress["kick_tick"], progress["ticks"]
         return Episodes(

@@ -31,7 +31,7 @@ Picture = NDArray[np.uint8]
 Action = NDArray[np.float32]
 Info = dict[str, Any]
 
-_TRAIL = 400
+_TRAIL_LENGTH = 400
 
 _INFO = {"is_success": "success", "time": "time", "optimum": "optimum", "kick_time": "kick_time"}
 """The infos of an ended episode, and their names in :class:`Episodes`."""
@@ -148,8 +148,8 @@ class TaskEnv(_OverArenas, gymnasium.Env[Observation, Action]):
         self.observation_space = Box(np.tile(one.low, count), np.tile(one.high, count), dtype=np.float32)
         self.action_space = _action_space(self.task)
         self._over = False
-        self._robot_trail: deque[Point] = deque(maxlen=_TRAIL)
-        self._ball_trail: deque[Point] = deque(maxlen=_TRAIL)
+        self._robot_trail: deque[Point] = deque(maxlen=_TRAIL_LENGTH)
+        self._ball_trail: deque[Point] = deque(maxlen=_TRAIL_LENGTH)
 
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None

@@ -11,8 +11,9 @@ from typing import NamedTuple, cast
 import numpy as np
 from pydantic import BaseModel
 
-from robobt.learning.envs.progress import PROGRESS, Progress
+from robobt.learning.envs.progress import PROGRESS, EpisodeProgress
 from robobt.learning.envs.task import BoolArray, FloatArray, IntArray
+from robobt.learning.opponents.sides import FIELD_GEOMETRY
 from robobt.sim.arenas import Arenas
 from robobt.sim.records import filled
 from robobt.world.compiled import (
@@ -20,14 +21,11 @@ from robobt.world.compiled import (
     compiled,
     compiled_inline,
     compiled_lean,
-    numbers_dtype,
     numbers_of,
 )
 from robobt.world.field import FieldGeometry
 from robobt.world.records import BALL, Ball
 from robobt.world.rules import goal_side
-
-FIELD = numbers_dtype(FieldGeometry)
 
 
 class Report(NamedTuple):
@@ -80,7 +78,7 @@ def is_over(ledger: Ledger, arena: int) -> bool:
 
 
 @compilable
-def begin_tick(episode: Progress, fired: bool) -> None:
+def begin_tick(episode: EpisodeProgress, fired: bool) -> None:
     """Count a tick, and note the first kick."""
     episode.ticks += 1
     if fired and episode.kick_tick < 0:
@@ -88,7 +86,7 @@ def begin_tick(episode: Progress, fired: bool) -> None:
 
 
 @compilable
-def goal_of(episode: Progress, ball: Ball, field: FieldGeometry) -> int:
+def goal_of(episode: EpisodeProgress, ball: Ball, field: FieldGeometry) -> int:
     """Note the ball's position, and return the sign of x of the goal that it entered, 0 for none."""
     half_length, half_width, post = field.length / 2, field.width / 2, field.goal_width / 2
     side = goal_side(episode.ball_x, episode.ball_y, ball.x, ball.y, half_length, half_width, post)
@@ -111,7 +109,7 @@ def count(time_limit: float, fired: BoolArray, ledger_: Ledger) -> bool:
     any_ended = False
     for i in range(len(fired)):
         if not is_over(ledger, i):
-            episode: Progress = episodes[i]
+            episode: EpisodeProgress = episodes[i]
             begin_tick(episode, fired[i])
             ledger.truncated[i] = episode.ticks >= time_limit
         any_ended = any_ended or is_over(ledger, i)
@@ -128,7 +126,7 @@ def goals(before_: FloatArray, after_: FloatArray, field_: FloatArray) -> IntArr
         field_: numbers of the field.
     """
     before, after = before_.view(BALL)[..., 0], after_.view(BALL)[..., 0]
-    field: FieldGeometry = field_.view(FIELD)[0]
+    field: FieldGeometry = field_.view(FIELD_GEOMETRY)[0]
     half_length, half_width, post = field.length / 2, field.width / 2, field.goal_width / 2
     found = np.zeros(len(after), dtype=np.int64)
     for i in range(len(after)):
@@ -151,7 +149,7 @@ def end_tick(
         failed: whether the episode ends without success, in a terminal state.
         time_limit: ticks after which the episode is truncated.
     """
-    episode: Progress = ledger.progress.view(PROGRESS)[arena, 0]
+    episode: EpisodeProgress = ledger.progress.view(PROGRESS)[arena, 0]
     ledger.rewards[arena] += earned
     episode.total_reward += earned
     terminated = success or failed

@@ -12,7 +12,7 @@ from robobt.world.compiled import record_dtype
 from robobt.world.records import BALL
 
 
-class Progress(Protocol):
+class EpisodeProgress(Protocol):
     """The progress of one episode: a row of :data:`PROGRESS`.
 
     Attributes:
@@ -38,8 +38,8 @@ class Progress(Protocol):
     potential: float
 
 
-PROGRESS = record_dtype(Progress)
-"""Record of the progress of an episode; see :class:`Progress`."""
+PROGRESS = record_dtype(EpisodeProgress)
+"""Record of the progress of an episode; see :class:`EpisodeProgress`."""
 
 
 def progress_at(balls: FloatArray) -> NDArray[np.void]:

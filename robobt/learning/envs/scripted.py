@@ -6,9 +6,9 @@ import numpy as np
 
 from robobt.learning.envs.task import FloatArray
 from robobt.models.actions import SCORE_ACTION, SHOOT_ACTION, ActionScaling
-from robobt.world.avoiding import FIRST_WAY, SLOW_WAYS, SPEED, WAYS
+from robobt.world.avoiding import FIRST_WAY, SLOW_WAYS, WAY_SPEED, WAYS
 from robobt.world.geometry import wrap_angles
-from robobt.world.team_view import BALL
+from robobt.world.team_view import BALL_INDEX
 
 AIM_GAIN = 6.0
 """Turning rate for each radian off the aim [1/s]."""
@@ -16,16 +16,16 @@ AIM_GAIN = 6.0
 _GENTLE_PULL = 1.5
 """Deceleration at which most dribblers still hold a ball [m/s^2]."""
 
-_INSIDE = 0.6
+_MOUTH_SHARE = 0.6
 """Share of the goal mouth, around its middle, at which the script kicks."""
 
 BEHIND = 0.1
 """Distance behind the ball of a robot that has it [m]."""
 
-_ROUND = 0.3
+_ROUND_BALL_DISTANCE = 0.3
 """Distance behind and beside the ball of the way round it [m]."""
 
-_IN_MOUTH = 0.13
+_BALL_IN_MOUTH = 0.13
 """A ball whose centre is within this distance is in the mouth [m]."""
 
 _SHOOTING = 1.7
@@ -34,14 +34,14 @@ _SHOOTING = 1.7
 _CORNER = 0.85
 """Aim between the post nearer to the goalkeeper, 0, and the other post, 1."""
 
-_CARRYING, _CAREFUL_TURN = 0.4, 2.5
+_CARRYING_SHARE, _CAREFUL_TURN = 0.4, 2.5
 """Share of its top speed, and turning rate with the ball [rad/s]."""
 
-_AIMED = 0.05
+_KICK_TOLERANCE = 0.05
 """Largest angle error for a kick [rad]."""
 
 
-_LOOK_AHEAD = 1.5
+_FREE_WAY_TIME = 1.5
 """Time for which a way has to be free [s]."""
 
 
@@ -75,11 +75,11 @@ def freest_way(observation: FloatArray) -> FloatArray:
     ahead = np.concatenate((np.cos(fast), 0.5 * np.cos(slow), [0.0]))
     aside = np.concatenate((np.sin(fast), 0.5 * np.sin(slow), [0.0]))
     c, s, distance, vx, vy, *_ = observation.T[..., None]
-    needed = np.minimum(_LOOK_AHEAD, distance / SPEED)
+    needed = np.minimum(_FREE_WAY_TIME, distance / WAY_SPEED)
     free = np.maximum(observation[:, FIRST_WAY:], 0.05)
     x, y = c * ahead - s * aside, s * ahead + c * aside
-    changed = np.hypot(x - vx / SPEED, y - vy / SPEED)
-    cost = -ahead + np.maximum(1.0 / free - 1.0 / needed, 0.0) / SPEED + 0.05 * changed
+    changed = np.hypot(x - vx / WAY_SPEED, y - vy / WAY_SPEED)
+    cost = -ahead + np.maximum(1.0 / free - 1.0 / needed, 0.0) / WAY_SPEED + 0.05 * changed
     best = cost.argmin(axis=1)[:, None]
     way = np.take_along_axis(x, best, 1), np.take_along_axis(y, best, 1)
     return np.column_stack((*way, np.zeros(len(observation))))
@@ -87,7 +87,7 @@ def freest_way(observation: FloatArray) -> FloatArray:
 
 def crowd(observation: FloatArray, learners: int) -> FloatArray:
     """Drive all learners at the ball, (n, learners * size of a team's view) -> (n, learners * 4)."""
-    ball = observation.reshape(len(observation), learners, -1)[..., BALL : BALL + 2]
+    ball = observation.reshape(len(observation), learners, -1)[..., BALL_INDEX : BALL_INDEX + 2]
     actions = np.full((len(observation), learners, SCORE_ACTION.size), -1.0)
     actions[..., :2] = ball / np.maximum(np.linalg.norm(ball, axis=-1, keepdims=True), 1e-6)
     x, y = np.moveaxis(ball, -1, 0)
@@ -106,7 +106,10 @@ def drive_to_shoot(observation: FloatArray, max_turn: float) -> FloatArray:
     x, y = distance * cos_ball, distance * sin_ball
     ahead, aside = x * cos_goal + y * sin_goal, x * sin_goal - y * cos_goal
     round_it = ahead < BEHIND / 2
-    back, left = np.where(round_it, _ROUND, BEHIND), np.where(round_it, np.copysign(_ROUND, aside), 0.0)
+    back, left = (
+        np.where(round_it, _ROUND_BALL_DISTANCE, BEHIND),
+        np.where(round_it, np.copysign(_ROUND_BALL_DISTANCE, aside), 0.0),
+    )
     x += left * -sin_goal - back * cos_goal
     y += left * cos_goal - back * sin_goal
     way = np.maximum(np.hypot(x, y), 1e-6)
@@ -131,7 +134,7 @@ def turn_and_kick(
     # Turning at rate w with the ball at distance L needs a pull of w^2 L.
     most = np.minimum(scaling.max_turn, np.sqrt(pull / np.hypot(ball_x, ball_y)))
     omega = np.clip(AIM_GAIN * off, -most, most)
-    kick = np.where(np.abs(off) < _INSIDE * half, 1.0, -1.0)
+    kick = np.where(np.abs(off) < _MOUTH_SHARE * half, 1.0, -1.0)
     return np.column_stack((omega / scaling.max_turn, kick))
 
 
@@ -147,14 +150,14 @@ def drive_and_kick(observation: FloatArray, scaling: ActionScaling = SCORE_ACTIO
     beside = np.abs(wrap_angles(np.arctan2(keeper_y, keeper_x)[:, None] - angles))
     rows, far = np.arange(len(observation)), beside.argmax(axis=1)
     corner = _CORNER * posts[rows, far] + (1.0 - _CORNER) * posts[rows, 1 - far]
-    has_it = (np.hypot(ball_x, ball_y) < _IN_MOUTH) & (np.abs(ball_y) < _IN_MOUTH / 2)
+    has_it = (np.hypot(ball_x, ball_y) < _BALL_IN_MOUTH) & (np.abs(ball_y) < _BALL_IN_MOUTH / 2)
     aim_x, aim_y = np.where(has_it[:, None], corner, ball).T
     turn = np.arctan2(aim_y, aim_x)
     near = np.hypot(*posts.mean(axis=1).T) < _SHOOTING
-    speed = np.where(has_it, np.where(near, 0.0, _CARRYING), 1.0)
+    speed = np.where(has_it, np.where(near, 0.0, _CARRYING_SHARE), 1.0)
     way = np.where(has_it[:, None], posts.mean(axis=1), ball)
     drive = speed[:, None] * way / np.hypot(*way.T)[:, None]
     most = np.where(has_it, _CAREFUL_TURN / scaling.max_turn, 1.0)
     omega = np.clip(AIM_GAIN / scaling.max_turn * turn, -most, most)
-    kick = np.where(has_it & near & (np.abs(turn) < _AIMED), 1.0, -1.0)
+    kick = np.where(has_it & near & (np.abs(turn) < _KICK_TOLERANCE), 1.0, -1.0)
     return np.column_stack((drive, omega, kick))

@@ -12,6 +12,10 @@ from robobt.sim.records import RecordArray, size
 from robobt.world.field import FieldGeometry
 from robobt.world.records import BALL, ROBOT, ROBOT_SIZE
 
+MOUTH_GAP = 3e-4
+"""Gap between ball and front before the dribbler takes the ball [m]."""
+
+
 ROBOT_COLUMNS = ROBOT.names or ()
 BALL_COLUMNS = tuple(f"ball_{name}" for name in BALL.names or ())
 START_COLUMNS = (*ROBOT_COLUMNS, *BALL_COLUMNS)
@@ -67,7 +71,7 @@ def check_starts(rows: FloatArray, columns: Sequence[str], robots: int, field: F
 GIVE_UP = 1000
 """Number of draws after which no start is found."""
 
-_BLOCK = 8
+_STARTS_AT_A_TIME = 8
 """Number of starts that an arena draws at a time, because drawing one takes as long."""
 
 Sampler = Callable[[np.random.Generator, int], FloatArray]
@@ -91,8 +95,8 @@ class StartPool:
     def __init__(self, sample: Sampler, rngs: Sequence[np.random.Generator], columns: int) -> None:
         self._sample = sample
         self._rngs = rngs
-        self._drawn = np.zeros((len(rngs), _BLOCK, columns))
-        self._next = [_BLOCK] * len(rngs)
+        self._drawn = np.zeros((len(rngs), _STARTS_AT_A_TIME, columns))
+        self._next = [_STARTS_AT_A_TIME] * len(rngs)
         self._given = np.zeros((0, columns))
         self._next_given = 0
 
@@ -109,8 +113,8 @@ class StartPool:
         rows = np.empty((len(which), self._drawn.shape[-1]))
         rows[:given] = self._given[first : first + given]
         for k, arena in enumerate(which[given:].tolist(), given):
-            if self._next[arena] == _BLOCK:
-                self._drawn[arena] = self._sample(self._rngs[arena], _BLOCK)
+            if self._next[arena] == _STARTS_AT_A_TIME:
+                self._drawn[arena] = self._sample(self._rngs[arena], _STARTS_AT_A_TIME)
                 self._next[arena] = 0
             rows[k] = self._drawn[arena, self._next[arena]]
             self._next[arena] += 1

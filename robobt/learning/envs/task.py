@@ -13,7 +13,7 @@ BoolArray = NDArray[np.bool_]
 IntArray = NDArray[np.int64]
 
 
-class Ends(NamedTuple):
+class EpisodeEnds(NamedTuple):
     """The ends of the episodes of ``n`` arenas, (n,) each; see :class:`StepResult`."""
 
     terminated: BoolArray
@@ -21,15 +21,15 @@ class Ends(NamedTuple):
     success: BoolArray
 
     @classmethod
-    def none(cls, n: int) -> Ends:
+    def none(cls, n: int) -> EpisodeEnds:
         """Return the ends of ``n`` running episodes."""
         rows = np.zeros((3, n), dtype=np.bool_)
         # Unpacking them would cost three times as much.
         return cls(rows[0], rows[1], rows[2])
 
-    def copy(self) -> Ends:
+    def copy(self) -> EpisodeEnds:
         """Return a copy with these changes."""
-        return Ends(*(part.copy() for part in self))
+        return EpisodeEnds(*(part.copy() for part in self))
 
     @property
     def over(self) -> BoolArray:

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from robobt.config.errors import RobobtError
-from robobt.learning.envs.task import BoolArray, Ends, FloatArray
+from robobt.learning.envs.task import BoolArray, EpisodeEnds, FloatArray
 from robobt.signals import Terminated
 from robobt.world.observation import Seen
 
@@ -115,7 +115,7 @@ def checked_ends(task: object, tick: Tick, n: int) -> tuple[BoolArray, BoolArray
     return success, failed
 
 
-def end_by(task: object, tick: Tick, ends: Ends, time_limit: int) -> None:
+def end_by(task: object, tick: Tick, ends: EpisodeEnds, time_limit: int) -> None:
     """Fill ``ends`` by a task's ``ends`` and the time limit, except for episodes that have already ended.
 
     Raises:

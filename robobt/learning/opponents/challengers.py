@@ -31,23 +31,23 @@ from robobt.skills.ball.dribble_to import Course, carrying_velocity, steady
 from robobt.skills.ball.go_to_ball import (
     FACING_BALL,
     HANDOVER_DISTANCE,
-    Geometric,
+    GeometricApproach,
     approach_heading,
     beside,
     is_at_ball,
     meeting_law,
 )
-from robobt.skills.ball.kick_loose import FOLLOW, SPEED, Hold, KickLoose, has_lasted
+from robobt.skills.ball.kick_loose import FOLLOW, LOOSE_KICK_SPEED, Hold, KickLoose, has_lasted
 from robobt.skills.ball.let_go import push_speed
 from robobt.skills.ball.pick_up_ball import PickUpBall, creeping
 from robobt.skills.ball.settle_ball import SettleBall, Settling, is_settled
 from robobt.skills.base import heading_thereabouts
 from robobt.skills.conditions.carried_far import way_carried
 from robobt.skills.defence.wall import wall_place
-from robobt.skills.tactics.attacker import CANDIDATE, NOBODY, choose_attacker, may_be_attacked
+from robobt.skills.tactics.attacker import ATTACKER_CANDIDATE, NOBODY, choose_attacker, may_be_attacked
 from robobt.skills.tactics.receive_pass import ReceivePass
 from robobt.skills.tactics_settings import DEFAULT_TACTICS, AppliedTactics, TacticsSettings, applied
-from robobt.world.ball_model import DEFAULT_BALL
+from robobt.world.ball_model import DEFAULT_BALL, ROLL_DECELERATION, SLIDE_DECELERATION, SWITCH_SHARE
 from robobt.world.compiled import compiled, numbers_of, record_dtype
 from robobt.world.field import FieldGeometry
 from robobt.world.game import Team
@@ -109,7 +109,7 @@ class _Plan(Protocol):
     since: float
 
 
-class _Memory(Protocol):
+class _ChallengerMemory(Protocol):
     """Of one robot.
 
     Attributes:
@@ -128,18 +128,16 @@ class _Memory(Protocol):
     at_ball: float
 
 
-_MEMORY = record_dtype(_Memory)
+_CHALLENGER_MEMORY = record_dtype(_ChallengerMemory)
 _FRESH = np.array([*astuple(Hold()), *astuple(Settling()), *astuple(Course()), nan, nan, 0.0])
 """A memory of nothing."""
 
 _TEAM, _PLAN, _WATCH = record_dtype(_Team), record_dtype(_Plan), record_dtype(Watch)
-_CANDIDATE_SIZE = size(CANDIDATE)
-_SLIDE, _ROLL = DEFAULT_BALL.slide_deceleration, DEFAULT_BALL.roll_deceleration
-_SHARE = DEFAULT_BALL.switch_share
-_PATIENCE, _SLOW, _PAUSE = KickLoose.patience, SettleBall.slow, SettleBall.pause
-_CREEP, _ROLLS = PickUpBall.speed or 0.5, ReceivePass.slowest
-_ARRIVAL_SPEED = Geometric().arrival_speed
-_BEFORE_AREA = 0.2
+_CANDIDATE_SIZE = size(ATTACKER_CANDIDATE)
+_HOLD_PATIENCE, _SETTLED_SPEED, _SETTLING_PAUSE = KickLoose.patience, SettleBall.slow, SettleBall.pause
+_PICK_UP_SPEED, _RECEIVABLE_SPEED = PickUpBall.speed or 0.5, ReceivePass.slowest
+_APPROACH_SPEED = GeometricApproach().arrival_speed
+_CARRY_AREA_GAP = 0.2
 """How far before the other defence area it carries the ball [m]."""
 _PASSED = -0.05
 """How far beyond the robot a ball has passed it [m]."""
@@ -253,15 +251,19 @@ def _decide(
         see_robots(robots[i], contact[i], rows, sign, own, ball, seen, every, has)
         disputed = bool(has[mates:].any())
         time, speed = times[i], hypot(ball.vx, ball.vy)
-        rolling = follow(watches.view(_WATCH)[i, 0], time, speed, _SLIDE, _ROLL, _SHARE)
+        rolling = follow(
+            watches.view(_WATCH)[i, 0], time, speed, SLIDE_DECELERATION, ROLL_DECELERATION, SWITCH_SHARE
+        )
         first = -1
         plan: _Plan = plans[i].view(_PLAN)[0]
         if may_be_attacked(ball.x, ball.y, tactics):
             there = np.array([ball.x, ball.y, ball.vx, ball.vy])
             length, width = team.scene.half_length, team.scene.half_width
-            met = meetings(movers[:mates], there, rolling, _SLIDE, _ROLL, length, width)
+            met = meetings(
+                movers[:mates], there, rolling, SLIDE_DECELERATION, ROLL_DECELERATION, length, width
+            )
             for row in range(mates):
-                candidate = candidates.view(CANDIDATE)[row, 0]
+                candidate = candidates.view(ATTACKER_CANDIDATE)[row, 0]
                 candidate.time = met.view(MEETING)[row, 0].time if who[rows[row]] else inf
                 candidate.x, candidate.has_ball = every[row].x, has[row]
             before, since = int(plan.attacker), time - plan.since
@@ -278,7 +280,7 @@ def _decide(
             commands[i, rows[row]] = 0.0
             command: Command = commands[i].view(COMMAND)[rows[row], 0]
             if row == first:
-                mind = memory[i, rows[row]].view(_MEMORY)[0]
+                mind = memory[i, rows[row]].view(_CHALLENGER_MEMORY)[0]
                 _play_the_ball(team, every, rolling, (has[row], disputed), time, mind, command)
             else:
                 _wall(team, every, place, waiting, command)
@@ -302,7 +304,7 @@ def _play_the_ball(
     rolling: float,
     held: tuple[bool, bool],
     time: float,
-    memory: _Memory,
+    memory: _ChallengerMemory,
     command: Command,
 ) -> None:
     """Decide a tick of the robot that goes for the ball.
@@ -318,17 +320,17 @@ def _play_the_ball(
     """
     me, scene, ball, (has, disputed) = team.trip.me, team.scene, team.scene.ball, held
     speed = hypot(ball.vx, ball.vy)
-    if has and disputed and has_lasted(memory.hold, time, me.heading, _PATIENCE):
-        command.vx, command.kick_speed, command.on_contact = FOLLOW, SPEED, 1.0
+    if has and disputed and has_lasted(memory.hold, time, me.heading, _HOLD_PATIENCE):
+        command.vx, command.kick_speed, command.on_contact = FOLLOW, LOOSE_KICK_SPEED, 1.0
     elif _carried_far(ball.x, ball.y, has and not disputed, memory) and (
         way_carried(ball, memory.taken_x, memory.taken_y) >= CARRIED
     ):
         command.kick_speed = push_speed(me, ball)
-    elif has and not is_settled(memory.settling, time, speed, _SLOW, _PAUSE):
+    elif has and not is_settled(memory.settling, time, speed, _SETTLED_SPEED, _SETTLING_PAUSE):
         _handle(team, (0.0, 0.0), me.heading, team.brakes, True, command)
     elif has:
         _carry(team, movers, time, memory, command)
-    elif speed >= _ROLLS and _comes(team, speed):
+    elif speed >= _RECEIVABLE_SPEED and _comes(team, speed):
         _meet(team, movers, speed, rolling, command)
     else:
         _get(team, movers, memory, command)
@@ -338,7 +340,7 @@ def _play_the_ball(
 
 
 @compiled
-def _carried_far(x: float, y: float, alone: bool, memory: _Memory) -> bool:
+def _carried_far(x: float, y: float, alone: bool, memory: _ChallengerMemory) -> bool:
     """Note where the robot took the ball; return whether it has it alone."""
     if not alone:
         memory.taken_x = nan
@@ -348,11 +350,13 @@ def _carried_far(x: float, y: float, alone: bool, memory: _Memory) -> bool:
 
 
 @compiled
-def _carry(team: _Team, movers: Sequence[Mover], time: float, memory: _Memory, command: Command) -> None:
+def _carry(
+    team: _Team, movers: Sequence[Mover], time: float, memory: _ChallengerMemory, command: Command
+) -> None:
     """Act like ``DribbleTo``, with a target in front of the other goal."""
     trip, scene, own, limits = team.trip, team.scene, team.own, team.dribbles
     me = trip.me
-    trip.x, trip.y = scene.half_length - scene.area_depth - _BEFORE_AREA, 0.0
+    trip.x, trip.y = scene.half_length - scene.area_depth - _CARRY_AREA_GAP, 0.0
     trip.ball_gap, trip.avoids_robots = -1.0, 1.0
     x, y, there = waypoint_law(trip, (trip.x, trip.y), scene, movers, own, True)
     heading = steady(memory.course, time, direction((me.x, me.y), (x, y)), KEEP_WAY)
@@ -388,7 +392,9 @@ def _meet(team: _Team, movers: Sequence[Mover], speed: float, rolling: float, co
             given.braking,
         )
         there = np.array([ball.x, ball.y, ball.vx, ball.vy])
-        met = meetings(one, there, rolling, _SLIDE, _ROLL, scene.half_length, scene.half_width)
+        met = meetings(
+            one, there, rolling, SLIDE_DECELERATION, ROLL_DECELERATION, scene.half_length, scene.half_width
+        )
         x, y = met[0, 1] + MOUTH * ux, met[0, 2] + MOUTH * uy
     trip.x, trip.y, trip.heading = x, y, atan2(-dy, -dx)
     _travel(team, movers, (0.0, -1.0), False, command)
@@ -396,21 +402,21 @@ def _meet(team: _Team, movers: Sequence[Mover], speed: float, rolling: float, co
 
 
 @compiled
-def _get(team: _Team, movers: Sequence[Mover], memory: _Memory, command: Command) -> None:
+def _get(team: _Team, movers: Sequence[Mover], memory: _ChallengerMemory, command: Command) -> None:
     """Act like ``GoToBall`` and ``PickUpBall``."""
     trip, own, given = team.trip, team.own, team.given
     me, ball = trip.me, team.scene.ball
     at_ball = is_at_ball(me, ball, memory.at_ball > 0.0, HANDOVER_DISTANCE, FACING_BALL)
     memory.at_ball = 1.0 if at_ball else 0.0
     if at_ball:
-        bearing, vx, vy = creeping(me, ball, _CREEP)
+        bearing, vx, vy = creeping(me, ball, _PICK_UP_SPEED)
         _handle(team, (vx, vy), bearing, own, own.reaction > 0.0, command)
         return
     pace = given.max_speed, given.acceleration, given.braking
-    meeting = meeting_law(me, ball, pace, _SLIDE, _ROLL)
+    meeting = meeting_law(me, ball, pace, SLIDE_DECELERATION, ROLL_DECELERATION)
     trip.heading, _ = approach_heading(me, ball, meeting)
     trip.x, trip.y = beside(meeting, direction((me.x, me.y), meeting))
-    _travel(team, movers, (_ARRIVAL_SPEED, -1.0), False, command)
+    _travel(team, movers, (_APPROACH_SPEED, -1.0), False, command)
 
 
 @compiled

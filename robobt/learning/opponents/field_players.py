@@ -9,13 +9,13 @@ from math import atan2, cos, hypot, inf, sin, sqrt
 import numpy as np
 from numpy.typing import NDArray
 
-from robobt.learning.opponents.sides import Arenas, Side, side_of
-from robobt.learning.opponents.straight import DRIVE, Drive, drive_of, drive_straight
+from robobt.learning.opponents.sides import FIELD_GEOMETRY, Arenas, Side, side_of
+from robobt.learning.opponents.straight import DRIVING_LIMITS, DrivingLimits, drive_of, drive_straight
 from robobt.plays.baselines.agreement import MARK_FROM
 from robobt.plays.baselines.mark_opponent import MarkOpponent
 from robobt.sim.records import COMMAND, Command
 from robobt.skills.defence.wall import wall_place
-from robobt.world.compiled import compilable, compiled, numbers_dtype, numbers_of
+from robobt.world.compiled import compilable, compiled, numbers_of
 from robobt.world.field import FieldGeometry
 from robobt.world.geometry import FloatArray, Point, wrap_angle
 from robobt.world.limits import RobotLimits
@@ -44,26 +44,25 @@ class Role(IntEnum):
 
 PLAYERS = tuple(role.name.lower() for role in Role)
 """The roles as settings name them."""
-_FIELD = numbers_dtype(FieldGeometry)
 _GENTLE = 2.5
 """Highest turning rate with the ball [rad/s]."""
-_CARRYING = 1.2
+_CARRYING_SPEED = 1.2
 """Speed with the ball [m/s]."""
-_NEAR = 1.9
+_SHOOTING_RANGE = 1.9
 """Distance from which they shoot [m]."""
-_AIMED = 0.06
+_KICK_ANGLE_ERROR = 0.06
 """Largest angle error for a kick [rad]."""
-SHOT = 6.0
+SCRIPTED_SHOT_SPEED = 6.0
 """Speed of shots [m/s]."""
 _LEAD = 0.5
 """How far ahead a rolling ball is predicted [s]."""
 _ARRIVES = 0.8
 """Speed with which a pass reaches a team-mate [m/s]."""
-_KEPT, _ROLLING = 0.66, 0.3
+_KEPT_SPEED_AFTER_SLIDE, _ROLLING_DECELERATION = 0.66, 0.3
 """Share of a kick's speed that remains once the ball rolls, and its deceleration then [m/s^2]."""
-_MOUTH = 0.09
+_MOUTH_DISTANCE = 0.09
 """Distance from a robot's centre to the ball in its mouth [m]."""
-_BESIDE = MarkOpponent.gap
+_MARKING_GAP = MarkOpponent.gap
 _FREE = 0.35
 """A lane to a team-mate is free if no robot is closer to it than this [m]."""
 
@@ -122,8 +121,8 @@ def _decide(
     arenas: Arenas,
     commands: FloatArray,
 ) -> None:
-    field: FieldGeometry = field_.view(_FIELD)[0]
-    drive: Drive = drive_.view(DRIVE)[0]
+    field: FieldGeometry = field_.view(FIELD_GEOMETRY)[0]
+    drive: DrivingLimits = drive_.view(DRIVING_LIMITS)[0]
     (roles, fetch, blue), (robots_, balls_, contact) = roles_, arenas
     robots, balls, orders = (
         robots_.view(ROBOT)[..., 0],
@@ -148,9 +147,9 @@ def _decide(
             elif role == Role.REDIRECT:
                 x, y = _coming(me, ball)
                 # The robot's mouth should be there, not its centre.
-                target = x - _MOUTH * cos(me.heading), y - _MOUTH * sin(me.heading)
+                target = x - _MOUTH_DISTANCE * cos(me.heading), y - _MOUTH_DISTANCE * sin(me.heading)
                 facing, _ = shot_at(field, side, me)
-                kick = SHOT
+                kick = SCRIPTED_SHOT_SPEED
             elif role in (Role.ATTACK, Role.PASS):
                 if contact[i, r]:
                     turn = _GENTLE
@@ -159,10 +158,10 @@ def _decide(
                     else:
                         facing, near = shot_at(field, side, me)
                         if not near:
-                            target, top = facing, _CARRYING
+                            target, top = facing, _CARRYING_SPEED
                     off = wrap_angle(atan2(facing[1] - me.y, facing[0] - me.x) - me.heading)
-                    if near and abs(off) < _AIMED:
-                        kick = SHOT if role == Role.ATTACK else pass_speed(ball, facing)
+                    if near and abs(off) < _KICK_ANGLE_ERROR:
+                        kick = SCRIPTED_SHOT_SPEED if role == Role.ATTACK else pass_speed(ball, facing)
                 elif nearest_to(side, _LEAD, fetch) == r:
                     target = _coming(me, ball)
                 elif role == Role.ATTACK:
@@ -178,7 +177,7 @@ def _decide(
 def pass_speed(ball: Ball, target: Point) -> float:
     """Return the kick speed of a pass to a place [m/s]."""
     way = hypot(target[0] - ball.x, target[1] - ball.y)
-    return sqrt(_ARRIVES * _ARRIVES + 2.0 * _ROLLING * way) / _KEPT
+    return sqrt(_ARRIVES * _ARRIVES + 2.0 * _ROLLING_DECELERATION * way) / _KEPT_SPEED_AFTER_SLIDE
 
 
 @compiled
@@ -238,7 +237,7 @@ def _marked(
             return robots[me].x, robots[me].y
         if marker == me:
             dx, dy = ball.x - robots[threat].x, ball.y - robots[threat].y
-            share = _BESIDE / max(_BESIDE, hypot(dx, dy))
+            share = _MARKING_GAP / max(_MARKING_GAP, hypot(dx, dy))
             return robots[threat].x + share * dx, robots[threat].y + share * dy
         taken[threat] = taken[marker] = True
 
@@ -265,7 +264,7 @@ def shot_at(field: FieldGeometry, side: Side, me: Robot) -> tuple[Point, bool]:
         if not side.first <= r < side.last and far < best:
             best, y = far, side.robots[r].y
     corner = -0.7 * post if y > 0.0 else 0.7 * post
-    return (goal_x, corner), hypot(goal_x - me.x, me.y) < _NEAR
+    return (goal_x, corner), hypot(goal_x - me.x, me.y) < _SHOOTING_RANGE
 
 
 @compiled

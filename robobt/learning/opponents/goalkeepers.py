@@ -29,7 +29,7 @@ from robobt.skills.defence.cover_angle import CoverAngle, cover_place, is_at_hom
 from robobt.skills.defence.cover_near_post import CoverNearPost, near_post_place
 from robobt.skills.defence.return_to_goal import ReturnToGoal
 from robobt.skills.defence.shot_coming import ShotComing, crossing
-from robobt.world.ball_model import DEFAULT_BALL
+from robobt.world.ball_model import ROLL_DECELERATION, SLIDE_DECELERATION, SWITCH_SHARE
 from robobt.world.compiled import compiled, numbers_of, record_dtype
 from robobt.world.field import FieldGeometry
 from robobt.world.game import Team
@@ -65,9 +65,7 @@ class Case(IntEnum):
 
 
 _BEFORE_GOAL, _STAND_OUT = ReturnToGoal.before_goal, CoverAngle.stand_out
-_EDGE_REST, _REST = BallAtDefenseEdge.rest_speed, BallRestsInDefense.rest_speed
-_SLIDE, _ROLL = DEFAULT_BALL.slide_deceleration, DEFAULT_BALL.roll_deceleration
-_SHARE = DEFAULT_BALL.switch_share
+_EDGE_REST_SPEED, _AREA_REST_SPEED = BallAtDefenseEdge.rest_speed, BallRestsInDefense.rest_speed
 
 
 class _Style(NamedTuple):
@@ -88,7 +86,7 @@ class _Style(NamedTuple):
     dives: bool
 
 
-_SHIPPED = _Style(ShotComing.min_speed, 0.1, 0.0, near_post=False, dives=True)
+_DEFAULT_STYLE = _Style(ShotComing.min_speed, 0.1, 0.0, near_post=False, dives=True)
 _FITTED = _Style(0.01, 0.0, CoverNearPost.before_goal, near_post=True, dives=False)
 
 
@@ -101,7 +99,7 @@ class _Setting(Protocol):
     field: FieldGeometry
 
 
-class _Memory(Protocol):
+class _GoalkeeperMemory(Protocol):
     """Of one goalkeeper.
 
     Attributes:
@@ -116,7 +114,7 @@ class _Memory(Protocol):
     slowed: float
 
 
-_SETTING, _MEMORY = record_dtype(_Setting), record_dtype(_Memory)
+_SETTING, _GOALKEEPER_MEMORY = record_dtype(_Setting), record_dtype(_GoalkeeperMemory)
 
 
 class Goalkeepers:
@@ -136,7 +134,7 @@ class Goalkeepers:
         cases: (n,) the last case of each.
     """
 
-    style = _SHIPPED
+    style = _DEFAULT_STYLE
 
     def __init__(
         self, field: FieldGeometry, limits: RobotLimits, period: float, n: int, speed: ArrayLike = 1.0
@@ -151,13 +149,13 @@ class Goalkeepers:
         self._given = np.tile(self._own, (n, 1))
         self._period = period
         self._ticks = np.zeros(n)
-        self._memory = np.zeros((n, size(_MEMORY)))
+        self._memory = np.zeros((n, size(_GOALKEEPER_MEMORY)))
         self._told = np.zeros((n, size(COMMAND)))
         self.restart(np.arange(n), speed)
 
     def restart(self, which: NDArray[np.int64], speed: ArrayLike | None = None) -> None:
         """Forget earlier observations in the arenas ``which``; ``speed`` is as for the constructor."""
-        memory = self._memory.view(_MEMORY)[:, 0]
+        memory = self._memory.view(_GOALKEEPER_MEMORY)[:, 0]
         if speed is not None:
             factors = np.broadcast_to(np.asarray(speed, dtype=np.float64), which.shape)
             if not ((factors > 0.0) & np.isfinite(factors)).all():
@@ -170,7 +168,7 @@ class Goalkeepers:
 
     def _forget(self, which: NDArray[np.int64]) -> None:
         self._ticks[which] = 0.0
-        memory = self._memory.view(_MEMORY)[:, 0]
+        memory = self._memory.view(_GOALKEEPER_MEMORY)[:, 0]
         memory["fetching"][which] = 0.0
         for watch in ("aim", "shot"):
             memory[watch][which] = -inf, 0.0, 0.0
@@ -230,7 +228,7 @@ class FittedGoalkeepers(Goalkeepers):
         super().__init__(field, limits, period, n)
         driven = ROBOBULLS_LIMITS.model_copy(update={"acceleration": acceleration, "braking": braking})
         self._given[:] = limits_of(driven)
-        self._memory.view(_MEMORY)["slowed"] = 1.0
+        self._memory.view(_GOALKEEPER_MEMORY)["slowed"] = 1.0
 
     def restart(self, which: NDArray[np.int64], speed: ArrayLike | None = None) -> None:
         """Reset the arenas ``which``, with these top speeds [m/s], one for all or one each."""
@@ -264,7 +262,7 @@ def _decide(
     robots_, balls_, contact = arenas
     robots, balls = robots_.view(ROBOT)[..., 0], balls_.view(BALL)[:, 0]
     memories, limits, orders = (
-        memory_.view(_MEMORY)[:, 0],
+        memory_.view(_GOALKEEPER_MEMORY)[:, 0],
         given_.view(LIMITS)[:, 0],
         commands.view(COMMAND)[:, 0],
     )
@@ -292,9 +290,11 @@ def _decide(
             place = blocking_place(trip.me, ball, target, 0.0)
             if style.dives:
                 watch, speed = memory.aim if case == Case.AIM else memory.shot, hypot(ball.vx, ball.vy)
-                rolling = follow(watch, times[i], speed, _SLIDE, _ROLL, _SHARE)
+                rolling = follow(watch, times[i], speed, SLIDE_DECELERATION, ROLL_DECELERATION, SWITCH_SHARE)
                 pace = (given.max_speed, given.acceleration, given.braking)
-                final_speed = dive_speed(trip.me, ball, place, rolling, pace, _SLIDE, _ROLL)
+                final_speed = dive_speed(
+                    trip.me, ball, place, rolling, pace, SLIDE_DECELERATION, ROLL_DECELERATION
+                )
                 command.dribbler = 1.0
             facing = direction((trip.me.x, trip.me.y), (ball.x, ball.y))
             gentle = slowed or own.reaction > 0.0
@@ -310,7 +310,11 @@ def _decide(
 
 @compiled
 def _case(
-    style: _Style, setting: _Setting, robots: Sequence[Robot], has: NDArray[np.bool_], memory: _Memory
+    style: _Style,
+    setting: _Setting,
+    robots: Sequence[Robot],
+    has: NDArray[np.bool_],
+    memory: _GoalkeeperMemory,
 ) -> tuple[int, float]:
     """Return the case, and where the ball would cross the goal line if it is one of a shot [m]."""
     field, ball = setting.field, setting.scene.ball
@@ -333,11 +337,11 @@ def _case(
         return Case.SHOT, y
     speed, fetching = hypot(ball.vx, ball.vy), memory.fetching > 0.0
     at_edge = is_at_edge(ball, field, fetching)
-    fetching = at_edge and (fetching or (speed <= _EDGE_REST and is_ours(own_way, nearest)))
+    fetching = at_edge and (fetching or (speed <= _EDGE_REST_SPEED and is_ours(own_way, nearest)))
     memory.fetching = 1.0 if fetching else 0.0
     if fetching:
         return Case.FETCH, 0.0
-    if lies_in_area(ball, field) and (speed <= _REST or carries):
+    if lies_in_area(ball, field) and (speed <= _AREA_REST_SPEED or carries):
         return Case.CLEAR, 0.0
     return (Case.COVER if ball.x > style.before_goal - field.length / 2 else Case.HOME), 0.0
 

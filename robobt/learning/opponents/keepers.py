@@ -17,10 +17,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from robobt.learning.opponents.goalkeepers import Case, FittedGoalkeepers, Goalkeepers
-from robobt.learning.opponents.sides import Arenas, see_ball, see_robot
-from robobt.learning.opponents.straight import DRIVE, TURN, Drive, drive_of, drive_straight
+from robobt.learning.opponents.sides import FIELD_GEOMETRY, Arenas, see_ball, see_robot
+from robobt.learning.opponents.straight import DRIVING_LIMITS, TURN, DrivingLimits, drive_of, drive_straight
 from robobt.sim.records import COMMAND, Command, size
-from robobt.world.compiled import compilable, compiled_lean, numbers_dtype, numbers_of, record_dtype
+from robobt.world.compiled import compilable, compiled_lean, numbers_of, record_dtype
 from robobt.world.field import FieldGeometry
 from robobt.world.geometry import FloatArray, Point
 from robobt.world.limits import RobotLimits
@@ -48,7 +48,7 @@ class Kind(IntEnum):
     FITTED = 5
 
 
-KINDS = tuple(kind.name.lower() for kind in Kind)
+GOALKEEPER_KINDS = tuple(kind.name.lower() for kind in Kind)
 """The kinds as settings name them."""
 
 
@@ -66,17 +66,17 @@ class Keeper(Protocol):
     keeper_out: float
 
 
-KEEPER, _FIELD = record_dtype(Keeper), numbers_dtype(FieldGeometry)
-TRAITS = KEEPER.names or ()
-_SHOT = 1.0
+KEEPER = record_dtype(Keeper)
+GOALKEEPER_TRAITS = KEEPER.names or ()
+_INCOMING_SHOT_SPEED = 1.0
 """A ball this fast towards the goal is a shot [m/s]."""
-_BESIDE = 0.1
+_BESIDE_POSTS = 0.1
 """How far beside the posts a shot still counts [m]."""
-_NEAR = 3.0
+_RUSHING_DISTANCE = 3.0
 """Distance of the ball below which ``rush`` comes out [m]."""
-_FARTHEST = 0.9
+_FARTHEST_RUSH = 0.9
 """How far it comes out, which is inside the defence area [m]."""
-_REST = 0.1
+_KEPT_BALL_SPEED = 0.1
 """A ball slower than this rests [m/s]."""
 
 
@@ -107,7 +107,7 @@ class Keepers:
         self._field = numbers_of(field)
         self._drive = drive_of(limits, period)
         self._top = limits.max_speed
-        self._traits = np.zeros((n, len(TRAITS)))
+        self._traits = np.zeros((n, len(GOALKEEPER_TRAITS)))
         self._shipped = Goalkeepers(field, limits, period, n)
         self._fitted: FittedGoalkeepers | None = None
         self._new_fitted = partial(_real, field, limits, period, n)
@@ -174,8 +174,8 @@ def _decide(
     commands: FloatArray,
     kept: NDArray[np.bool_],
 ) -> None:
-    field: FieldGeometry = field_.view(_FIELD)[0]
-    drive: Drive = drive_.view(DRIVE)[0]
+    field: FieldGeometry = field_.view(FIELD_GEOMETRY)[0]
+    drive: DrivingLimits = drive_.view(DRIVING_LIMITS)[0]
     (index, blue), (robots_, balls_, contact), (pairs_, turned_, holds) = who, arenas, seen
     robots, balls = robots_.view(ROBOT)[..., 0], balls_.view(BALL)[:, 0]
     pairs, turned = pairs_.view(ROBOT)[..., 0], turned_.view(BALL)[:, 0]
@@ -193,7 +193,7 @@ def _decide(
         near = in_area(
             ball.x, ball.y, field.length / 2, field.defense_depth, field.defense_width, ROBOT_RADIUS
         )
-        kept[i] = near and not holds[i, 0] and hypot(ball.vx, ball.vy) < _REST
+        kept[i] = near and not holds[i, 0] and hypot(ball.vx, ball.vy) < _KEPT_BALL_SPEED
         place = _place(keeper, attacker, me, ball, field.length / 2, field.goal_width / 2)
         commands[i, index] = 0.0
         command: Command = orders[i, index]
@@ -219,9 +219,9 @@ def _place(keeper: Keeper, attacker: Robot, me: Robot, ball: Ball, goal_x: float
     """Return where a goalkeeper drives now."""
     kind, out = int(keeper.keeper_kind), keeper.keeper_out
     line = goal_x - out
-    if ball.vx > _SHOT and not _pointed_by(attacker, ball):
+    if ball.vx > _INCOMING_SHOT_SPEED and not _pointed_by(attacker, ball):
         crosses = ball.y + (goal_x - ball.x) * ball.vy / ball.vx
-        if abs(crosses) < half_goal + _BESIDE and ball.x < goal_x:
+        if abs(crosses) < half_goal + _BESIDE_POSTS and ball.x < goal_x:
             # The nearest point on the shot's line, not behind the goal line.
             fast = hypot(ball.vx, ball.vy)
             ux, uy = ball.vx / fast, ball.vy / fast
@@ -237,7 +237,7 @@ def _place(keeper: Keeper, attacker: Robot, me: Robot, ball: Ball, goal_x: float
     dx, dy = ball.x - goal_x, ball.y
     far = max(hypot(dx, dy), 1e-6)
     if kind == Kind.RUSH:
-        out += max(min(_FARTHEST, far - 1.0) - out, 0.0) if far < _NEAR else 0.0
+        out += max(min(_FARTHEST_RUSH, far - 1.0) - out, 0.0) if far < _RUSHING_DISTANCE else 0.0
     return goal_x + min(out * dx / far, -ROBOT_RADIUS), out * dy / far
 
 
@@ -245,4 +245,4 @@ def _place(keeper: Keeper, attacker: Robot, me: Robot, ball: Ball, goal_x: float
 def _pointed_by(attacker: Robot, ball: Ball) -> bool:
     """Return whether the attacker still has the ball, so that it has not shot yet."""
     near = hypot(ball.x - attacker.x, ball.y - attacker.y) < 2.0 * ROBOT_RADIUS
-    return near and hypot(ball.vx - attacker.vx, ball.vy - attacker.vy) < _SHOT
+    return near and hypot(ball.vx - attacker.vx, ball.vy - attacker.vy) < _INCOMING_SHOT_SPEED

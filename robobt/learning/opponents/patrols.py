@@ -8,16 +8,16 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from robobt.learning.opponents.straight import DRIVE, TURN, Drive, drive_of, drive_straight
+from robobt.learning.opponents.straight import DRIVING_LIMITS, TURN, DrivingLimits, drive_of, drive_straight
 from robobt.sim.records import COMMAND
 from robobt.world.compiled import compilable, compiled_lean, record_dtype
 from robobt.world.geometry import FloatArray, Point
 from robobt.world.limits import RobotLimits
 from robobt.world.records import ROBOT
 
-_THERE = 0.1
+_TURNING_DISTANCE = 0.1
 """Distance to an end at which it turns round [m]."""
-_STUCK, _PATIENCE = 0.1, 10.0
+_STUCK_SPEED, _STUCK_TICKS = 0.1, 10.0
 """A patrol slower than this [m/s] for this many ticks is blocked, and turns round."""
 
 
@@ -31,15 +31,15 @@ class Patrol(Protocol):
     speed: float
 
 
-class _Memory(Protocol):
+class _PatrolMemory(Protocol):
     """Whether it is on its way to the second end, and for how many ticks it has been blocked."""
 
     there: float
     stuck: float
 
 
-PATROL, _MEMORY = record_dtype(Patrol), record_dtype(_Memory)
-TRAITS = PATROL.names or ()
+PATROL, _PATROL_MEMORY = record_dtype(Patrol), record_dtype(_PatrolMemory)
+PATROL_TRAITS = PATROL.names or ()
 
 
 class Patrols:
@@ -53,8 +53,8 @@ class Patrols:
     """
 
     def __init__(self, limits: RobotLimits, period: float, n: int, count: int) -> None:
-        self._drive = drive_of(limits, period, _STUCK)
-        self._traits = np.zeros((n, count, len(TRAITS)))
+        self._drive = drive_of(limits, period, _STUCK_SPEED)
+        self._traits = np.zeros((n, count, len(PATROL_TRAITS)))
         self._memory = np.zeros((n, count, 2))
 
     def restart(self, which: NDArray[np.int64], traits: FloatArray) -> None:
@@ -71,19 +71,19 @@ class Patrols:
 def _decide(
     drive_: FloatArray, traits: FloatArray, memory: FloatArray, robots: FloatArray, commands: FloatArray
 ) -> None:
-    drive: Drive = drive_.view(DRIVE)[0]
-    patrols, minds = traits.view(PATROL)[..., 0], memory.view(_MEMORY)[..., 0]
+    drive: DrivingLimits = drive_.view(DRIVING_LIMITS)[0]
+    patrols, minds = traits.view(PATROL)[..., 0], memory.view(_PATROL_MEMORY)[..., 0]
     all_, orders = robots.view(ROBOT)[..., 0], commands.view(COMMAND)[..., 0]
     arenas, count = patrols.shape
     first = all_.shape[1] - count
     for i in range(arenas):
         for k in range(count):
             patrol: Patrol = patrols[i, k]
-            mind: _Memory = minds[i, k]
+            mind: _PatrolMemory = minds[i, k]
             me, command = all_[i, first + k], orders[i, first + k]
-            mind.stuck = mind.stuck + 1.0 if hypot(me.vx, me.vy) < _STUCK else 0.0
+            mind.stuck = mind.stuck + 1.0 if hypot(me.vx, me.vy) < _STUCK_SPEED else 0.0
             x, y = _end(patrol, mind)
-            if hypot(x - me.x, y - me.y) < _THERE or mind.stuck > _PATIENCE:
+            if hypot(x - me.x, y - me.y) < _TURNING_DISTANCE or mind.stuck > _STUCK_TICKS:
                 mind.there, mind.stuck = 1.0 - mind.there, 0.0
                 x, y = _end(patrol, mind)
             commands[i, first + k] = 0.0
@@ -93,5 +93,5 @@ def _decide(
 
 
 @compilable
-def _end(patrol: Patrol, mind: _Memory) -> Point:
+def _end(patrol: Patrol, mind: _PatrolMemory) -> Point:
     return (patrol.to_x, patrol.to_y) if mind.there > 0.0 else (patrol.from_x, patrol.from_y)

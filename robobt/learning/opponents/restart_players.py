@@ -12,16 +12,16 @@ from numpy.typing import NDArray
 from robobt.learning.opponents.challengers import CHALLENGE
 from robobt.learning.opponents.field_players import (
     PLAYERS,
-    SHOT,
+    SCRIPTED_SHOT_SPEED,
     nearest_to,
     pass_speed,
     passed_to,
     shot_at,
 )
-from robobt.learning.opponents.sides import Side, side_of
+from robobt.learning.opponents.sides import FIELD_GEOMETRY, Side, side_of
 from robobt.learning.opponents.straight import stopping_speed, turning
 from robobt.sim.records import COMMAND, Command
-from robobt.world.compiled import compilable, compiled, numbers_dtype, numbers_of, record_dtype
+from robobt.world.compiled import compilable, compiled, numbers_of, record_dtype
 from robobt.world.field import FieldGeometry
 from robobt.world.geometry import FloatArray, wrap_angle
 from robobt.world.limits import RobotLimits
@@ -52,16 +52,15 @@ class RestartState(Protocol):
 
 RESTART = record_dtype(RestartState)
 
-_FIELD = numbers_dtype(FieldGeometry)
-_OFF = STOP_DISTANCE + ROBOT_RADIUS + 0.1
+_OTHERS_BALL_DISTANCE = STOP_DISTANCE + ROBOT_RADIUS + 0.1
 """Distance from the centre to a ball that others take [m]."""
-_ASIDE = ROBOT_RADIUS + BALL_RADIUS + 0.1
+_UNTOUCHED_BALL_DISTANCE = ROBOT_RADIUS + BALL_RADIUS + 0.1
 """Distance from the centre to a ball that the robot must not touch [m]."""
-_BEHIND, _ROUND = 0.25, 0.3
+_RUN_UP_BEHIND, _RUN_UP_ASIDE = 0.25, 0.3
 """Run-up distance of a taker, and its distance beside the ball on the way there [m]."""
-_STRAIGHT, _AIMED = 0.03, 0.06
+_LINE_TOLERANCE, _AIM_TOLERANCE = 0.03, 0.06
 """Largest errors from the line through ball and target for the run-up [m, rad]."""
-_GENTLY = 0.5
+_RUN_UP_SPEED = 0.5
 """Speed of the run-up [m/s]."""
 _HURRY = 6.0
 """Speed per metre of remaining distance [1/s]."""
@@ -117,7 +116,7 @@ def _decide(
     arenas: tuple[FloatArray, FloatArray, FloatArray],
     commands: FloatArray,
 ) -> None:
-    field: FieldGeometry = field_.view(_FIELD)[0]
+    field: FieldGeometry = field_.view(FIELD_GEOMETRY)[0]
     (scripted, able, passes), (restarts_, robots_, balls_) = roles, arenas
     restarts, robots = restarts_.view(RESTART)[:, 0], robots_.view(ROBOT)[..., 0]
     balls, orders = balls_.view(BALL)[:, 0], commands.view(COMMAND)[..., 0]
@@ -138,7 +137,13 @@ def _decide(
                 commands[i, r] = 0.0
                 _take(field, side, r, passes[r], drive, command)
             else:
-                _keep_off(all_[r], ball, _ASIDE if team == 0.0 else _OFF, drive, command)
+                _keep_off(
+                    all_[r],
+                    ball,
+                    _UNTOUCHED_BALL_DISTANCE if team == 0.0 else _OTHERS_BALL_DISTANCE,
+                    drive,
+                    command,
+                )
 
 
 @compilable
@@ -153,7 +158,7 @@ def _keep_off(
     # The way out in the robot's frame.
     ux, uy = (c * dx + s * dy) / far, (c * dy - s * dx) / far
     room = far - keep
-    slowest = _GENTLY if room < 0.0 else -sqrt(braking * room)
+    slowest = _RUN_UP_SPEED if room < 0.0 else -sqrt(braking * room)
     short = slowest - (command.vx * ux + command.vy * uy)
     if short > 0.0:
         command.vx += short * ux
@@ -169,7 +174,7 @@ def _take(
     drive: tuple[float, float, float],
     command: Command,
 ) -> None:
-    me, ball, kick, (top, turn, braking) = side.robots[me_], side.ball, SHOT, drive
+    me, ball, kick, (top, turn, braking) = side.robots[me_], side.ball, SCRIPTED_SHOT_SPEED, drive
     target, _ = shot_at(field, side, me)
     if passes:
         mate, free = passed_to(side, me_)
@@ -181,14 +186,14 @@ def _take(
     along, aside = dx * ux + dy * uy, dy * ux - dx * uy
     off = wrap_angle(atan2(uy, ux) - me.heading)
     # The robot's distances from the ball, along the line and beside it.
-    to_along, to_aside = -_BEHIND, 0.0
-    if along < 0.0 and abs(aside) < _STRAIGHT and abs(off) < _AIMED:
-        to_along, top = 0.0, _GENTLY
+    to_along, to_aside = -_RUN_UP_BEHIND, 0.0
+    if along < 0.0 and abs(aside) < _LINE_TOLERANCE and abs(off) < _AIM_TOLERANCE:
+        to_along, top = 0.0, _RUN_UP_SPEED
         command.kick_speed, command.on_contact = kick, 1.0
-    elif along > -_ASIDE:
+    elif along > -_UNTOUCHED_BALL_DISTANCE:
         # If it is not behind the ball yet, it drives away from the ball first, then past it.
-        to_aside = _ROUND if aside > 0.0 else -_ROUND
-        if abs(aside) < _ASIDE:
+        to_aside = _RUN_UP_ASIDE if aside > 0.0 else -_RUN_UP_ASIDE
+        if abs(aside) < _UNTOUCHED_BALL_DISTANCE:
             to_along = along
     way_x = (to_along - along) * ux - (to_aside - aside) * uy
     way_y = (to_along - along) * uy + (to_aside - aside) * ux

@@ -9,10 +9,15 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from robobt.world.compiled import compilable
+from robobt.world.compiled import compilable, numbers_dtype
+from robobt.world.field import FieldGeometry
 from robobt.world.geometry import FloatArray, wrap_angle
 from robobt.world.records import Ball, Limits, Mover, Robot
 from robobt.world.rules import before_mouth
+
+FIELD_GEOMETRY = numbers_dtype(FieldGeometry)
+"""The record of a :class:`~robobt.world.field.FieldGeometry` for compiled code."""
+
 
 Arenas = tuple[FloatArray, FloatArray, NDArray[np.bool_]]
 """States of robots (n, R, 6) and balls (n, 4), and who has the ball in its mouth (n, R)."""

@@ -14,13 +14,13 @@ from robobt.world.records import Robot
 
 TURN = 6.0
 """Highest turning rate of most of them [rad/s]."""
-_LOOK = 6.0
+_TURNING_GAIN = 6.0
 """Turning rate per radian of error [1/s]."""
-_CAREFUL = 0.8
+_RELIED_BRAKING_SHARE = 0.8
 """Share of its braking that a robot relies on."""
 
 
-class Drive(Protocol):
+class DrivingLimits(Protocol):
     """Parameters of driving.
 
     Attributes:
@@ -34,17 +34,17 @@ class Drive(Protocol):
     slowest: float
 
 
-DRIVE = record_dtype(Drive)
+DRIVING_LIMITS = record_dtype(DrivingLimits)
 
 
 def drive_of(limits: RobotLimits, period: float, slowest: float = 0.0) -> FloatArray:
-    """Return the numbers of :class:`Drive` for a robot with such limits."""
+    """Return the numbers of :class:`DrivingLimits` for a robot with such limits."""
     return np.array([min(limits.braking, limits.lateral_braking), period, slowest])
 
 
 @compilable
 def drive_straight(
-    me: Robot, target: Point, facing: Point, top: float, turn: float, drive: Drive
+    me: Robot, target: Point, facing: Point, top: float, turn: float, drive: DrivingLimits
 ) -> tuple[float, float, float]:
     """Return a command: velocity ahead and to the left [m/s], and turning rate [rad/s].
 
@@ -68,10 +68,10 @@ def drive_straight(
 @compilable
 def stopping_speed(way: float, braking: float) -> float:
     """Return the speed from which a robot with this ``braking`` certainly stops within ``way`` [m/s]."""
-    return sqrt(2.0 * _CAREFUL * braking * way)
+    return sqrt(2.0 * _RELIED_BRAKING_SHARE * braking * way)
 
 
 @compilable
 def turning(off: float, most: float) -> float:
     """Return how fast to turn by ``off`` [rad], at most ``most`` [rad/s]."""
-    return min(max(_LOOK * off, -most), most)
+    return min(max(_TURNING_GAIN * off, -most), most)

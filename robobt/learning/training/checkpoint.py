@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from robobt.config.atomic import write_atomically
 from robobt.config.errors import RobobtError
 
-_MAGIC = b"robobt-checkpoint-2\n"
+_CHECKPOINT_MAGIC = b"robobt-checkpoint-2\n"
 _DIGEST = 32
 _STATE = "state"
 
@@ -50,7 +50,7 @@ def save(path: Path, arrays: Mapping[str, NDArray[np.generic]], state: RunState)
     digest = hashlib.blake2b(payload, digest_size=_DIGEST).digest()
     if path.exists():
         path.replace(previous(path))
-    write_atomically(path, b"".join((_MAGIC, digest, payload)))
+    write_atomically(path, b"".join((_CHECKPOINT_MAGIC, digest, payload)))
 
 
 def load(path: Path) -> tuple[Arrays, RunState]:
@@ -63,11 +63,11 @@ def load(path: Path) -> tuple[Arrays, RunState]:
         content = path.read_bytes()
     except OSError as error:
         raise CheckpointError(f"{path}: cannot be read: {error.strerror or error}") from error
-    head = len(_MAGIC) + _DIGEST
-    if not content.startswith(_MAGIC):
+    head = len(_CHECKPOINT_MAGIC) + _DIGEST
+    if not content.startswith(_CHECKPOINT_MAGIC):
         raise CheckpointError(f"{path}: not a checkpoint of this version of robobt")
     payload = memoryview(content)[head:]
-    if hashlib.blake2b(payload, digest_size=_DIGEST).digest() != content[len(_MAGIC) : head]:
+    if hashlib.blake2b(payload, digest_size=_DIGEST).digest() != content[len(_CHECKPOINT_MAGIC) : head]:
         raise CheckpointError(f"{path}: damaged or cut short")
     with np.load(io.BytesIO(payload), allow_pickle=False) as stored:
         arrays: Arrays = {name: stored[name] for name in stored.files}

@@ -37,12 +37,12 @@ from robobt.learning.envs import ArenaTask, TaskSettings, make_task
 from robobt.learning.envs.task import BoolArray, FloatArray
 from robobt.learning.training.teachers import TEACHERS
 
-FORMAT = "robobt-demonstrations-1"
+DEMONSTRATIONS_FORMAT = "robobt-demonstrations-1"
 
-_ARENAS = 16
+_RECORDING_ARENAS = 16
 """Side by side while recording."""
 
-_STEP = ("observation", "action", "reward", "next_observation", "terminated", "truncated", "success")
+_STEP_COLUMNS = ("observation", "action", "reward", "next_observation", "terminated", "truncated", "success")
 """The columns of a step."""
 
 _MEANINGS = ("action", "period", "reward", "contact")
@@ -91,7 +91,7 @@ class Demonstrations:
     def transitions(self, horizons: Sequence[int], gamma: float) -> Iterator[tuple[Transitions, ...]]:
         """Yield what a replay takes, as :class:`~robobt.learning.agents.nstep.NStep` makes it."""
         returns = NStep(horizons, gamma, 1, self.observation.shape[1], self.action.shape[1])
-        columns = [getattr(self, name) for name in _STEP if name != "success"]
+        columns = [getattr(self, name) for name in _STEP_COLUMNS if name != "success"]
         for i in range(len(self)):
             yield from returns.add(*[column[i : i + 1] for column in columns])
 
@@ -103,7 +103,7 @@ class Demonstrations:
         columns = {
             "episode": pa.array(self.episode.astype(np.int32)),
             "tick": pa.array(ticks.astype(np.int32)),
-            **{name: _column(getattr(self, name)) for name in _STEP},
+            **{name: _column(getattr(self, name)) for name in _STEP_COLUMNS},
         }
         table = pa.table(columns).replace_schema_metadata({"robobt": json.dumps(self.about)})
         with replacing(path) as temporary, naming(path):
@@ -121,11 +121,11 @@ def read_demonstrations(path: str | Path) -> Demonstrations:
         about = json.loads((table.schema.metadata or {})[b"robobt"])
     except (OSError, ValueError, KeyError) as error:
         raise DemonstrationsError(f"{path}: no demonstrations can be read: {_reason(error)}") from error
-    if not isinstance(about, dict) or about.get("format") != FORMAT:
+    if not isinstance(about, dict) or about.get("format") != DEMONSTRATIONS_FORMAT:
         raise DemonstrationsError(f"{path}: not a file of demonstrations")
     try:
         episode = table["episode"].to_numpy().astype(np.int64)
-        steps = {name: _array(table[name]) for name in _STEP}
+        steps = {name: _array(table[name]) for name in _STEP_COLUMNS}
         return Demonstrations(episode=episode, about=about, **steps)
     except (KeyError, ValueError) as error:
         raise DemonstrationsError(f"{path}: {_reason(error)}") from error
@@ -154,7 +154,7 @@ def record(
         raise ValueError(f"no teacher is called {teacher!r}; {unknown_name(teacher, TEACHERS)}")
     if episodes < 1:
         raise ValueError(f"episodes must be at least 1, not {episodes}")
-    task = make_task(environment, min(episodes, _ARENAS))
+    task = make_task(environment, min(episodes, _RECORDING_ARENAS))
     teaching = TEACHERS[teacher](task)
     starts = task.sample_starts(seed, episodes)
     observation = task.reset_to(starts, seed)
@@ -184,7 +184,7 @@ def record(
     flat = [row for start in range(episodes) for row in ended[start]]
     numbers = [start for start in range(episodes) for _ in ended[start]]
     about = {
-        "format": FORMAT,
+        "format": DEMONSTRATIONS_FORMAT,
         "task": task.observation.name,
         "observation": _named(task),
         "environment": environment.model_dump(mode="json"),
@@ -192,7 +192,7 @@ def record(
         "seed": seed,
         "robobt": __version__,
     }
-    steps = dict(zip(_STEP, map(np.array, zip(*flat, strict=True)), strict=True))
+    steps = dict(zip(_STEP_COLUMNS, map(np.array, zip(*flat, strict=True)), strict=True))
     return Demonstrations(episode=np.array(numbers), about=about, **steps)
 
 

@@ -23,7 +23,7 @@ from robobt.learning.opponents.play_settings import PlaySettings
 from robobt.learning.training.run_folder import ACTOR, PAST, load_actor, read_settings
 from robobt.learning.training.setting_groups import Script
 
-_ARENAS = 128
+_ENCOUNTER_ARENAS = 128
 """Arenas side by side in an encounter."""
 
 
@@ -40,7 +40,7 @@ class Contender:
 
 
 @dataclass(frozen=True)
-class Encounter:
+class PolicyEncounter:
     """Two contenders from ``starts`` starts, each played on both sides; ``won`` are goals of the first."""
 
     first: str
@@ -110,7 +110,7 @@ def contenders_of(folder: Path, past: int, name: str = "") -> tuple[SoccerSettin
 
 def encounters(
     settings: SoccerSettings, contenders: Sequence[Contender], starts: int, seed: int
-) -> list[Encounter]:
+) -> list[PolicyEncounter]:
     """Play every pair of contenders, from starts derived from ``seed`` and the pair. Return the results.
 
     Raises:
@@ -128,7 +128,7 @@ def encounters(
         away = -_goals(settings, second, first, starts, drawn)
         goals = np.concatenate((home, away))
         won, lost = int((goals > 0).sum()), int((goals < 0).sum())
-        found.append(Encounter(first.name, second.name, starts, won, len(goals) - won - lost, lost))
+        found.append(PolicyEncounter(first.name, second.name, starts, won, len(goals) - won - lost, lost))
     return found
 
 
@@ -141,7 +141,7 @@ def _goals(
         made = against(made, yellow.plays)
     if not isinstance(blue.plays, Actor):
         made = instead(made, blue.plays)
-    task = SoccerTask(made, min(_ARENAS, starts))
+    task = SoccerTask(made, min(_ENCOUNTER_ARENAS, starts))
     sides = [
         (np.flatnonzero(np.array(task.learners, dtype=np.int64) < task.blue), blue.plays),
         (np.flatnonzero(np.array(task.learners, dtype=np.int64) >= task.blue), yellow.plays),

@@ -7,18 +7,18 @@ import numpy as np
 from robobt.learning.agents.ddpg import DDPG
 from robobt.learning.agents.networks import Actor, policy_of
 from robobt.learning.agents.nstep import NStep
-from robobt.learning.agents.replay import PrioritisedReplay, Replay
+from robobt.learning.agents.replay import PrioritisedReplay, ReplayBuffer
 from robobt.learning.training.checkpoint import Arrays, RunState
 from robobt.learning.training.clock import RunClock
 from robobt.learning.training.demonstrations import demonstrations_for
 from robobt.learning.training.problems import Problem
 from robobt.learning.training.progress import OnProgress
-from robobt.learning.training.run import Run, TrainError, part
+from robobt.learning.training.run import TrainError, TrainingRun, part
 from robobt.learning.training.run_folder import RunFolder
 from robobt.learning.training.settings import TrainSettings
 
 
-class OffPolicyRun(Run):
+class OffPolicyRun(TrainingRun):
     """A run of :class:`~robobt.learning.agents.ddpg.DDPG`."""
 
     _agent: DDPG
@@ -115,11 +115,11 @@ class OffPolicyRun(Run):
         super()._restore(arrays, state)
         self._replay.restore(part(arrays, "replay/"))
 
-    def _make_replay(self) -> Replay:
+    def _make_replay(self) -> ReplayBuffer:
         settings = self._settings.replay
         sizes = len(self._problem.scale), len(self._problem.smoothed), len(self._horizons)
         if not settings.priority.enabled:
-            return Replay(settings.buffer_size, *sizes)
+            return ReplayBuffer(settings.buffer_size, *sizes)
         return PrioritisedReplay(
             settings.buffer_size,
             *sizes,

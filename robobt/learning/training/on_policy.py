@@ -13,12 +13,12 @@ from robobt.learning.training.checkpoint import Arrays, RunState
 from robobt.learning.training.clock import RunClock
 from robobt.learning.training.problems import Problem
 from robobt.learning.training.progress import OnProgress
-from robobt.learning.training.run import Run, TrainError, part
+from robobt.learning.training.run import TrainError, TrainingRun, part
 from robobt.learning.training.run_folder import ACTOR, RunFolder, load_actor, read_settings
 from robobt.learning.training.settings import TrainSettings
 
 
-class OnPolicyRun(Run):
+class OnPolicyRun(TrainingRun):
     """A run of :class:`~robobt.learning.agents.ppo.PPO`, which advances by whole rollouts."""
 
     _agent: PPO

@@ -29,7 +29,7 @@ _SPLIT_SEEDS: dict[Split, int] = {"validation": 1_000_001, "held_out": 2_000_003
 _TRAINING = 2**62
 """Seeds of training episodes have this bit, so that none is the seed of fixed starts."""
 
-_ARENAS = 128
+_EVALUATION_ARENAS = 128
 """Arenas side by side in an evaluation."""
 
 
@@ -128,7 +128,7 @@ def _evaluate(worlds: Sequence[TaskSettings], policy: Policy, split: Split, star
     seed = split_seed(split)
     parts = []
     for world, share in zip(worlds, shares_of(starts, len(worlds)), strict=True):
-        task = make_task(world, min(_ARENAS, share))
+        task = make_task(world, min(_EVALUATION_ARENAS, share))
         parts.append(run_starts(task, task.jointly(policy), task.sample_starts(seed, share), seed))
     episodes = Episodes.joined(parts)
     times, rewards = getattr(episodes, task.timed), episodes.total_reward

@@ -16,7 +16,7 @@ _EVERY = 0.5
 
 
 @dataclass(frozen=True, slots=True)
-class Progress:
+class TrainingProgress:
     """Progress of a run.
 
     Attributes:
@@ -37,7 +37,7 @@ class Progress:
     best: Validation | None
 
 
-OnProgress = Callable[[Progress], None]
+OnProgress = Callable[[TrainingProgress], None]
 
 
 class Reporter:
@@ -66,7 +66,7 @@ class Reporter:
         pace = clock.here_s / max(1, steps - self._begun_at)
         left_s = pace * (settings.steps - steps)
         self._on_progress(
-            Progress(
+            TrainingProgress(
                 settings.seed,
                 steps,
                 settings.steps,

@@ -115,7 +115,7 @@ class TrainResult:
     figures: Figures
 
 
-class Spread(TypedDict):
+class SeedSpread(TypedDict):
     """Median and range over seeds."""
 
     median: float
@@ -127,11 +127,11 @@ class Reached(TypedDict):
     """How many seeds reached a bar, and at what cost; None unless all did."""
 
     reached: int
-    cpu_s: Spread | None
-    steps: Spread | None
+    cpu_s: SeedSpread | None
+    steps: SeedSpread | None
 
 
-class Summary(TypedDict):
+class SeedSummary(TypedDict):
     """Summary of several seeds of a run.
 
     ``best_seed`` is chosen by the validation starts; ``to_99`` is the cost of reaching 99 % of them and
@@ -145,13 +145,13 @@ class Summary(TypedDict):
     best_seed: int
     to_99: Reached
     to_bar: Reached
-    success: Spread | None
-    mean_time: Spread | None
-    time_ratio: Spread | None
-    steps: Spread | None
-    cpu_s: Spread | None
-    evaluation_cpu_s: Spread | None
-    wall_s: Spread | None
+    success: SeedSpread | None
+    mean_time: SeedSpread | None
+    time_ratio: SeedSpread | None
+    steps: SeedSpread | None
+    cpu_s: SeedSpread | None
+    evaluation_cpu_s: SeedSpread | None
+    wall_s: SeedSpread | None
 
 
 def held_out_figures(evaluation: Evaluation) -> HeldOutFigures:
@@ -173,7 +173,7 @@ def title_of(settings: TrainSettings) -> str:
     return f"{settings.task}, {settings.preset}" if settings.preset else settings.task
 
 
-def summary_of(results: Sequence[TrainResult]) -> Summary:
+def summary_of(results: Sequence[TrainResult]) -> SeedSummary:
     """Compute medians and ranges over the seeds of a run."""
     first = results[0].settings
     bar, enough = BARS.get(first.task, (0.99, float("inf"))), first.evaluation.enough
@@ -222,6 +222,6 @@ def _reached(found: Sequence[Validation | None]) -> Reached:
     }
 
 
-def _spread(values: Sequence[float | None]) -> Spread | None:
+def _spread(values: Sequence[float | None]) -> SeedSpread | None:
     known = [value for value in values if value is not None]
     return {"median": median(known), "low": min(known), "high": max(known)} if known else None

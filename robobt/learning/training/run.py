@@ -41,7 +41,7 @@ class Agent(Protocol):
         """Restore the :meth:`state` of another agent."""
 
 
-class Run(ABC):
+class TrainingRun(ABC):
     """A training run; subclasses collect experience and learn from it."""
 
     _agent: Agent

@@ -62,7 +62,7 @@ _TAGS = {
     "wall_s": "charts/wall_s",
 }
 """TensorBoard's tags of the scalar fields of :class:`Validation`."""
-_GROUPS = {"losses": "losses", "terms": "reward"}
+_FIGURE_GROUPS = {"losses": "losses", "terms": "reward"}
 """Fields of :class:`Validation` that hold figures by name, and how the tags of those begin."""
 
 
@@ -220,7 +220,7 @@ def scalars_of(validation: Validation) -> dict[str, float]:
     """Return the figures of an evaluation by the tags that they have in TensorBoard."""
     figures = asdict(validation)
     found: dict[str, float | None] = {tag: figures[name] for name, tag in _TAGS.items()}
-    for group, prefix in _GROUPS.items():
+    for group, prefix in _FIGURE_GROUPS.items():
         found |= {f"{prefix}/{name}": value for name, value in figures[group].items()}
     return {tag: value for tag, value in found.items() if value is not None}
 

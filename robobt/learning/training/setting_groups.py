@@ -58,7 +58,7 @@ class ReplaySettings(Settings):
         return self
 
 
-class CollectionSettings(Settings):
+class ExperienceSettings(Settings):
     """How the agent gathers experience.
 
     Steps are environment steps, summed over the ``num_envs`` environments.

@@ -16,8 +16,8 @@ from robobt.learning.training.arenas import opposed
 from robobt.learning.training.preset_files import SettingsError as SettingsError
 from robobt.learning.training.preset_files import assign, merged, read_preset
 from robobt.learning.training.setting_groups import (
-    CollectionSettings,
     EvaluationSettings,
+    ExperienceSettings,
     PoolSettings,
     ReplaySettings,
     StageSettings,
@@ -59,7 +59,7 @@ class TrainSettings(Settings):
     agent: AgentSettings = AgentSettings()
     ppo: PPOSettings = PPOSettings()
     replay: ReplaySettings = ReplaySettings()
-    collection: CollectionSettings = CollectionSettings()
+    collection: ExperienceSettings = ExperienceSettings()
     evaluation: EvaluationSettings = EvaluationSettings()
     rebuild_every: int = Field(
         20_000,

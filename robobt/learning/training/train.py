@@ -12,12 +12,12 @@ from robobt.learning.training.on_policy import OnPolicyRun
 from robobt.learning.training.problems import Problem, problem_for
 from robobt.learning.training.progress import OnProgress
 from robobt.learning.training.results import TrainResult
-from robobt.learning.training.run import Run
 from robobt.learning.training.run import TrainError as TrainError
+from robobt.learning.training.run import TrainingRun
 from robobt.learning.training.run_folder import RunFolder, alone_in
 from robobt.learning.training.settings import TrainSettings
 
-RUNS: dict[str, type[Run]] = {"ddpg": OffPolicyRun, "ppo": OnPolicyRun}
+RUNS: dict[str, type[TrainingRun]] = {"ddpg": OffPolicyRun, "ppo": OnPolicyRun}
 """How each learner collects and learns."""
 
 

@@ -13,7 +13,7 @@ from robobt.learning.envs import ArenaTask, make_task
 from robobt.learning.training.evaluation import Evaluation, Policy
 from robobt.learning.training.problems import Problem, Split, problem_for, split_seed
 from robobt.learning.training.settings import TrainSettings
-from robobt.live.controls import Controls
+from robobt.live.controls import IDLE_POLL, Controls
 from robobt.live.server import Server
 from robobt.live.stream import Stream
 from robobt.match.recording import RecordedRobot, RecordingHeader
@@ -22,11 +22,8 @@ from robobt.signals import check
 from robobt.world.game import Team
 from robobt.world.state import BallState, Frame, RobotState
 
-SHOWN = 5
+SHOWN_STARTS = 5
 """Number of starts shown of each evaluation."""
-
-_LOOK = 0.05
-"""Period of looking for input while paused [s]."""
 
 
 def watched_problem(server: Server, settings: TrainSettings) -> Problem:
@@ -59,8 +56,11 @@ class _Shows:
         capture = Capture(_header_of(task, f"{self._settings.task}: {figures}"))
         self._server.show(Stream(capture))
         period = task.settings.period * task.settings.decide_every
-        seed, left, ticks, due = split_seed(split), SHOWN, 0, time.perf_counter()
-        decide, observation = task.jointly(policy), task.reset_to(task.sample_starts(seed, SHOWN), seed)
+        seed, left, ticks, due = split_seed(split), SHOWN_STARTS, 0, time.perf_counter()
+        decide, observation = (
+            task.jointly(policy),
+            task.reset_to(task.sample_starts(seed, SHOWN_STARTS), seed),
+        )
         while left > 0 and self._server.viewers:
             check()
             capture.tick(_frame_of(task, ticks * period, period))
@@ -80,7 +80,7 @@ class _Shows:
         while self._controls.wait and self._server.viewers:
             check()
             with suppress(Empty):
-                self._controls.take(self._server.inbox.get(timeout=_LOOK)[0])
+                self._controls.take(self._server.inbox.get(timeout=IDLE_POLL)[0])
         self._controls.ticked()
 
 

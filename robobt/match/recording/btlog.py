@@ -26,11 +26,11 @@ from robobt.tree.interop.btcpp import OTHER_TAGS, TAGS
 from robobt.world.state import RobotId
 
 MAGIC = b"BTCPP4-FileLogger2"
-VERSION = 1
+BTLOG_VERSION = 1
 MOST_NODES = 2**16 - 1
 """Most nodes whose numbers, counted from 1, fit two bytes."""
 
-_STATUSES = {"-": 0, "R": 1, "S": 2, "F": 3}
+_STATUS_CODES = {"-": 0, "R": 1, "S": 2, "F": 3}
 _MODELS = {"leaf": "Action", "decorator": "Decorator", "composite": "Control"}
 
 
@@ -57,7 +57,7 @@ def btlog(recording: Recording, robot: RobotId) -> bytes:
         raise ValueError(f"the tree of {robot} has {len(told.tree)} nodes; a .btlog holds {MOST_NODES}")
     xml = tree_xml(told).encode()
     start = _microseconds(recording.times[0]) if len(recording) else 0
-    head = MAGIC + struct.pack("<Bi", VERSION, len(xml)) + xml + struct.pack("<q", start)
+    head = MAGIC + struct.pack("<Bi", BTLOG_VERSION, len(xml)) + xml + struct.pack("<q", start)
     return head + b"".join(_changes(recording, slot, start))
 
 
@@ -103,7 +103,7 @@ def _changes(recording: Recording, slot: int, start: int) -> Iterator[bytes]:
         time = (_microseconds(recording.times[tick]) - start).to_bytes(6, "little")
         for place, (letter, old) in enumerate(zip(letters, before, strict=True)):
             if letter != old:
-                yield time + struct.pack("<HB", place + 1, _STATUSES[letter])
+                yield time + struct.pack("<HB", place + 1, _STATUS_CODES[letter])
         before = letters
 
 

@@ -21,7 +21,7 @@ from robobt.world.game import GameState, Team
 from robobt.world.sketch import Shape, Sketch
 from robobt.world.state import Frame, RobotId
 
-FIELD = "field"
+FIELD_SKETCHES = "field"
 """Name under which the world's own drawing is kept, beside the robots' names."""
 
 _LOOK_AGAIN = 2.0
@@ -86,7 +86,7 @@ class Capture:
         self.field = Sketch()
         self.layers: set[str] = set()
         self._sketches = {str(robot): store.draw for robot, store in (stores or {}).items()}
-        self._sketches[FIELD] = self.field
+        self._sketches[FIELD_SKETCHES] = self.field
         self._drawn: dict[str, list[Shape]] = {}
         self._lookers: dict[object, Container[str]] = {}
         self._looked_at = False

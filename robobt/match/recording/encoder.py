@@ -13,7 +13,7 @@ from robobt.match.recording.capture import Capture, CapturedTick
 from robobt.match.recording.header import Event
 from robobt.match.recording.numbers import TickNumbers
 from robobt.match.recording.stores import StoreChanges
-from robobt.match.recording.stream import COLUMNS
+from robobt.match.recording.stream import RECORDING_COLUMNS
 from robobt.tree.recording import TreeChanges
 from robobt.world.sketch import Shape
 
@@ -50,7 +50,7 @@ class EncodedTicks:
             # Invalid Unicode, such as half a surrogate pair, becomes a question mark.
             pa.array([text and text.encode("utf-8", "replace") for text in texts], pa.string()),
         ]
-        return pa.RecordBatch.from_arrays(columns, COLUMNS)
+        return pa.RecordBatch.from_arrays(columns, RECORDING_COLUMNS)
 
 
 class TickEncoder:

@@ -19,8 +19,8 @@ from robobt.world.game import Team
 from robobt.world.limits import DEFAULT_LIMITS, RobotLimits
 from robobt.world.state import ROBOT_RADIUS, RobotId
 
-FORMAT = "robobt-recording"
-VERSION = 4
+RECORDING_FORMAT = "robobt-recording"
+RECORDING_VERSION = 4
 
 
 class RecordingError(RobobtError, ValueError):

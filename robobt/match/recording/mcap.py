@@ -49,7 +49,7 @@ from robobt.match.recording.mcap_messages import NUMBER, TREE_STATUS, stamp  # n
 Message: TypeAlias = tuple[int, str, Any]
 """Time [ns], topic, and the message itself."""
 
-_STATUSES = {"-": 0, "R": 1, "S": 2, "F": 3}
+_STATUS_NUMBERS = {"-": 0, "R": 1, "S": 2, "F": 3}
 _time_of = itemgetter(0)
 
 
@@ -144,7 +144,7 @@ def _tree(
                 "path": node.path,
                 "name": node.name,
                 "type": node.type,
-                "status": _STATUSES[letter.upper()],
+                "status": _STATUS_NUMBERS[letter.upper()],
                 "ticked": letter in "SFR",
                 "reason": "" if letter == "-" else reason,
             }

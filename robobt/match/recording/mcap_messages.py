@@ -9,7 +9,7 @@ from google.protobuf.descriptor_pool import DescriptorPool
 from google.protobuf.message_factory import GetMessageClass
 from google.protobuf.timestamp_pb2 import DESCRIPTOR as TIMESTAMP
 
-_PACKAGE = "robobt"
+_PROTO_PACKAGE = "robobt"
 
 _TYPES = {
     "string": FieldDescriptorProto.TYPE_STRING,
@@ -17,7 +17,7 @@ _TYPES = {
     "double": FieldDescriptorProto.TYPE_DOUBLE,
 }
 
-_STATUSES = ("NONE", "RUNNING", "SUCCESS", "FAILURE")
+_STATUS_ENUM = ("NONE", "RUNNING", "SUCCESS", "FAILURE")
 
 _MESSAGES = {
     "NodeStatus": {
@@ -46,10 +46,10 @@ def stamp(time: int) -> dict[str, int]:
 
 
 def _file() -> FileDescriptorProto:
-    file = FileDescriptorProto(name="robobt/recording.proto", package=_PACKAGE, syntax="proto3")
+    file = FileDescriptorProto(name="robobt/recording.proto", package=_PROTO_PACKAGE, syntax="proto3")
     file.dependency.append(TIMESTAMP.name)
     status = file.enum_type.add(name="Status")
-    for number, name in enumerate(_STATUSES):
+    for number, name in enumerate(_STATUS_ENUM):
         status.value.add(name=name, number=number)
     for name, entries in _MESSAGES.items():
         message = file.message_type.add(name=name)
@@ -69,7 +69,7 @@ def _file() -> FileDescriptorProto:
 
 
 def _class(name: str) -> Any:
-    return GetMessageClass(_POOL.FindMessageTypeByName(f"{_PACKAGE}.{name}"))
+    return GetMessageClass(_POOL.FindMessageTypeByName(f"{_PROTO_PACKAGE}.{name}"))
 
 
 # A pool of our own, so that nobody's messages get in the way.

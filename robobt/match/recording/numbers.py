@@ -16,20 +16,20 @@ from robobt.world.game import Team
 from robobt.world.geometry import FloatArray
 from robobt.world.state import RobotId
 
-BALL = 6
+BALL_NUMBERS = 6
 """Values per ball: x, y, vx, vy, z, vz."""
 
 POSE = 7
 """Values per robot: x, y, heading, vx, vy, omega, whether the ball is in its mouth."""
 
-COMMAND = 6
+COMMAND_NUMBERS = 6
 """Values per command: vx, vy, omega, kick speed, kick angle, flags."""
 
 # Powers of two, because zero bits of a number take no space in the file.
 _BALL_STEPS = (2**-16, 2**-16, 2**-10, 2**-10, 2**-16, 2**-10)
 _POSE_STEPS = (2**-16, 2**-16, 2**-14, 2**-13, 2**-13, 2**-10, 1.0)
 _COMMAND_STEPS = (2**-10, 2**-10, 2**-10, 2**-10, 2**-14, 1.0)
-_FARTHEST = 1e4
+_FARTHEST_NUMBER = 1e4
 
 _NO_COMMAND = RobotCommand()
 
@@ -44,7 +44,7 @@ class TickNumbers:
 
     def poses(self, frames: Sequence[bytes]) -> pa.Array:
         """Return the column ``truth`` or ``observed`` of frames from blue's side, packed."""
-        table = np.full((len(frames), BALL + POSE * len(self._slots)), nan)
+        table = np.full((len(frames), BALL_NUMBERS + POSE * len(self._slots)), nan)
         alike: dict[int, list[int]] = {}
         for tick, frame in enumerate(frames):
             alike.setdefault(len(frame), []).append(tick)
@@ -70,7 +70,7 @@ class TickNumbers:
         cells = packed[:, [usual.index(robot) for robot in self._slots]]
         dribbling, at_once, commanded = [cells[:, :, i] != 0.0 for i in (5, 6, 7)]
         kicking = cells[:, :, 3] != 0.0
-        table = cells[:, :, :COMMAND].copy()
+        table = cells[:, :, :COMMAND_NUMBERS].copy()
         table[:, :, -1] = (
             RobotFlag.COMMANDED.value * commanded
             + RobotFlag.DRIBBLER.value * dribbling
@@ -92,15 +92,15 @@ class TickNumbers:
             return
         # Frames with the ball on the ground have no height.
         flying = packed.shape[1] - 7 > 8 * robots
-        columns, taken = [*range(BALL if flying else 4)], [*range(1, 5)]
+        columns, taken = [*range(BALL_NUMBERS if flying else 4)], [*range(1, 5)]
         if flying:
             taken += packed.shape[1] - 2, packed.shape[1] - 1
         else:
-            table[ticks, 4:BALL] = 0.0
+            table[ticks, 4:BALL_NUMBERS] = 0.0
         for i, place in enumerate(places):
             robot = RobotId(Team.BLUE if i < own else Team.YELLOW, int(packed[0, place]))
             if robot in self._slots:
-                at = BALL + POSE * self._slots[robot]
+                at = BALL_NUMBERS + POSE * self._slots[robot]
                 columns += range(at, at + POSE)
                 taken += range(place + 1, place + 8)
         table[np.ix_(ticks, columns)] = packed[:, taken]
@@ -109,12 +109,12 @@ class TickNumbers:
 def numbers_of(column: pa.FixedSizeListArray) -> NDArray[np.float32]:
     """Return the table (ticks, numbers) of such a column; values that robobt never writes become unknown."""
     table = column.flatten().to_numpy(zero_copy_only=False).reshape(len(column), column.type.list_size)
-    return np.where(np.abs(table) < _FARTHEST, table, np.float32(np.nan))
+    return np.where(np.abs(table) < _FARTHEST_NUMBER, table, np.float32(np.nan))
 
 
 def _column(table: FloatArray, steps: tuple[float, ...]) -> pa.Array:
     """Return the column of a table (ticks, numbers), rounded to the precision of a recording."""
-    kept = np.where(np.abs(table) < _FARTHEST, table, nan)
+    kept = np.where(np.abs(table) < _FARTHEST_NUMBER, table, nan)
     rounded = (np.rint(kept / steps) * steps).astype(np.float32)
     kind = pa.list_(pa.float32(), len(steps))
     return pa.Array.from_buffers(kind, len(table), [None], children=[pa.array(rounded.reshape(-1))])

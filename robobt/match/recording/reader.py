@@ -9,9 +9,9 @@ import pyarrow as pa
 from numpy.typing import NDArray
 from pydantic import JsonValue, ValidationError
 
-from robobt.match.recording.capture import FIELD
+from robobt.match.recording.capture import FIELD_SKETCHES
 from robobt.match.recording.header import Event, RecordedNode, RecordingError, RecordingHeader, RobotFlag
-from robobt.match.recording.numbers import BALL, COMMAND, POSE, numbers_of
+from robobt.match.recording.numbers import BALL_NUMBERS, COMMAND_NUMBERS, POSE, numbers_of
 from robobt.match.recording.recording import Poses, Recording, Timeline
 from robobt.match.recording.stream import TickChanges, invalid, open_stream, read_bytes, too_large
 from robobt.world.game import GameState, Team
@@ -24,7 +24,7 @@ MOST_TEXT = 32 * 2**20
 _FEW_VALUES, _BYTES_PER_VALUE = 100_000, 8
 """Values of text that any file may hold, and bytes of the file per further value; robobt writes about 30."""
 
-_LONGEST = 1e9
+_LATEST_TIME = 1e9
 """Latest time allowed [s]."""
 
 
@@ -42,13 +42,13 @@ def load_recording(path: str | Path) -> Recording:
 def parse_recording(data: bytes, path: Path) -> Recording:
     """Read a recording in memory; ``path`` is its name in messages."""
     header, batches = open_stream(data, path)
-    reader = _Reader(path, header, _FEW_VALUES + len(data) // _BYTES_PER_VALUE)
+    reader = _BatchReader(path, header, _FEW_VALUES + len(data) // _BYTES_PER_VALUE)
     for batch in batches:
         reader.read(batch)
     return reader.recording()
 
 
-class _Reader:
+class _BatchReader:
     """Takes the batches of a recording one by one."""
 
     def __init__(self, path: Path, header: RecordingHeader, most_values: int) -> None:
@@ -56,9 +56,9 @@ class _Reader:
         self._slots = {str(robot.id): slot for slot, robot in enumerate(header.robots)}
         robots = len(header.robots)
         self._times = [np.zeros(0)]
-        self._truth = [np.zeros((0, BALL + POSE * robots), np.float32)]
+        self._truth = [np.zeros((0, BALL_NUMBERS + POSE * robots), np.float32)]
         self._observed = self._truth.copy()
-        self._commands = [np.zeros((0, COMMAND * robots), np.float32)]
+        self._commands = [np.zeros((0, COMMAND_NUMBERS * robots), np.float32)]
         self._letters: list[Timeline[str]] = [[] for _ in header.robots]
         self._feedback: list[Timeline[dict[int, str]]] = [[] for _ in header.robots]
         self._written: dict[str, Timeline[dict[str, JsonValue]]] = {
@@ -92,7 +92,7 @@ class _Reader:
     def recording(self) -> Recording:
         """Return the whole recording."""
         times = np.concatenate(self._times)
-        late = np.flatnonzero(~((times >= np.append(-np.inf, times[:-1])) & (np.abs(times) < _LONGEST)))
+        late = np.flatnonzero(~((times >= np.append(-np.inf, times[:-1])) & (np.abs(times) < _LATEST_TIME)))
         if late.size:
             raise self._error(int(late[0]), "time", "must be finite and not less than the time before")
         robots = len(self._header.robots)
@@ -100,7 +100,7 @@ class _Reader:
         observed = None
         if any(one is not other for one, other in zip(self._observed, self._truth, strict=True)):
             observed = poses_of(self._observed, robots)
-        commands = np.concatenate(self._commands).reshape(len(times), robots, COMMAND)
+        commands = np.concatenate(self._commands).reshape(len(times), robots, COMMAND_NUMBERS)
         odd = np.flatnonzero(~np.isin(commands[:, :, -1], range(sum(RobotFlag) + 1)).all(axis=1))
         if odd.size:
             raise self._error(int(odd[0]), "commands", "holds flags that are none")
@@ -144,7 +144,7 @@ class _Reader:
                 raise self._error(tick, "written", f"there is no robot or team {owner!r}")
             self._written[owner].append((tick, values))
         for owner, shapes in changes.drawn.items():
-            if owner not in self._slots and owner != FIELD:
+            if owner not in self._slots and owner != FIELD_SKETCHES:
                 raise self._error(tick, "drawn", f"there is no robot {owner!r}")
             self._drawn.setdefault(owner, []).append((tick, shapes))
         if changes.game is not None:
@@ -167,8 +167,8 @@ class _Reader:
 def poses_of(tables: list[NDArray[np.float32]], count: int) -> Poses:
     """Return the poses in tables (ticks, numbers) of this many robots; a partly unknown pose is unknown."""
     table = np.concatenate(tables)
-    ball = table[:, :BALL]
-    robots = table[:, BALL:].reshape(len(table), count, POSE)
+    ball = table[:, :BALL_NUMBERS]
+    robots = table[:, BALL_NUMBERS:].reshape(len(table), count, POSE)
     ball[np.isnan(ball).any(axis=1)] = np.nan
     robots[np.isnan(robots).any(axis=2)] = np.nan
     return Poses(ball, robots[:, :, :-1], robots[:, :, -1] == 1.0)

@@ -29,7 +29,7 @@ from robobt.world.state import RobotId
 _FLUSH_PERIOD = 1.0
 """Longest play that a killed match loses [s]."""
 
-_BUFFER = 2**20
+_WRITE_BUFFER = 2**20
 """Buffer that joins the many small writes of an Arrow batch [bytes]."""
 
 
@@ -69,7 +69,7 @@ class Recorder:
         self._most_ticks = max(1, round(_FLUSH_PERIOD / self.header.period))
         self.path.parent.mkdir(parents=True, exist_ok=True)
         with naming(self.path):
-            self._file = self.path.open("wb", _BUFFER)
+            self._file = self.path.open("wb", _WRITE_BUFFER)
             try:
                 self._writer = new_stream(self._file, self.header)
                 self._file.flush()

@@ -19,9 +19,9 @@ from robobt.tree.engine import LEAVING
 from robobt.tree.recording import make_reader
 from robobt.world.state import Frame, RobotId
 
-_LONGEST_TEXT = 200
+_LONGEST_STORED_TEXT = 200
 _MOST_ITEMS = 100
-_DEEPEST = 6
+_DEEPEST_STORED = 6
 _CHANGEABLE = frozenset((list, set, dict))
 
 
@@ -131,8 +131,8 @@ def _plain(value: object, depth: int) -> JsonValue:
     if isinstance(value, Enum):
         return plain(value.value, depth)
     if isinstance(value, str):
-        return value if len(value) <= _LONGEST_TEXT else value[: _LONGEST_TEXT - 3] + "..."
-    if depth >= _DEEPEST:
+        return value if len(value) <= _LONGEST_STORED_TEXT else value[: _LONGEST_STORED_TEXT - 3] + "..."
+    if depth >= _DEEPEST_STORED:
         return "..."
     depth += 1
     if isinstance(value, list | tuple):

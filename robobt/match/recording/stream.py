@@ -33,26 +33,32 @@ from pydantic import (
 )
 
 from robobt import __version__
-from robobt.match.recording.header import FORMAT, VERSION, Event, RecordingError, RecordingHeader
-from robobt.match.recording.numbers import BALL, COMMAND, POSE
+from robobt.match.recording.header import (
+    RECORDING_FORMAT,
+    RECORDING_VERSION,
+    Event,
+    RecordingError,
+    RecordingHeader,
+)
+from robobt.match.recording.numbers import BALL_NUMBERS, COMMAND_NUMBERS, POSE
 from robobt.match.recording.version_3 import BALL_3, COMMAND_3, from_version_3
 from robobt.world.game import GameState
 from robobt.world.sketch import MOST_SHAPES, check_shape
 from robobt.world.state import RobotId
 
-COLUMNS = ("time", "truth", "observed", "commands", "changes")
-_FORMAT, _VERSION, _HEADER = b"format", b"version", b"header"
+RECORDING_COLUMNS = ("time", "truth", "observed", "commands", "changes")
+_FORMAT_KEY, _VERSION_KEY, _HEADER_KEY = b"format", b"version", b"header"
 
-MOST_BYTES = 200 * 2**20
+MOST_RECORDING_BYTES = 200 * 2**20
 """Largest unpacked size that is read: an hour of play with six robots a side."""
 
 _SMALL, _RATIO = 24 * 2**20, 10
 """Unpacked size allowed for any file [bytes], and as a multiple of its size; robobt packs to a third."""
 
-_FOREIGN = "is not a robobt recording"
+_NO_RECORDING = "is not a robobt recording"
 
 _STREAM, _END = b"\xff\xff\xff\xff", b"\xff\xff\xff\xff\x00\x00\x00\x00"
-_READ = ("3", str(VERSION))
+_READ = ("3", str(RECORDING_VERSION))
 _OLD = (b"\x1f\x8b", b'{"format":"robobt-recording"')
 """How recordings of versions 1 and 2 begin, packed by gzip or plain."""
 
@@ -87,14 +93,14 @@ class TickChanges(BaseModel):
     outcome: dict[str, JsonValue] | None = Field(None, description="how the match ended, at its last tick")
 
 
-def _schema_of(header: RecordingHeader, version: str = str(VERSION)) -> pa.Schema:
+def _schema_of(header: RecordingHeader, version: str = str(RECORDING_VERSION)) -> pa.Schema:
     """Return the schema of a recording with this header, by default in the current version."""
-    ball, command = (BALL_3, COMMAND_3) if version == "3" else (BALL, COMMAND)
+    ball, command = (BALL_3, COMMAND_3) if version == "3" else (BALL_NUMBERS, COMMAND_NUMBERS)
     poses = pa.list_(pa.float32(), ball + POSE * len(header.robots))
     commands = pa.list_(pa.float32(), command * len(header.robots))
     types = (pa.float64(), poses, poses, commands, pa.string())
-    metadata = {_FORMAT: FORMAT, _VERSION: version, _HEADER: header.model_dump_json()}
-    return pa.schema(list(zip(COLUMNS, types, strict=True)), metadata=metadata)
+    metadata = {_FORMAT_KEY: RECORDING_FORMAT, _VERSION_KEY: version, _HEADER_KEY: header.model_dump_json()}
+    return pa.schema(list(zip(RECORDING_COLUMNS, types, strict=True)), metadata=metadata)
 
 
 def new_stream(sink: BinaryIO | pa.NativeFile, header: RecordingHeader) -> pa.ipc.RecordBatchStreamWriter:
@@ -111,11 +117,11 @@ def read_bytes(path: Path) -> bytes:
     try:
         with path.open("rb") as file:
             # Python allocates memory for everything that a read asks for.
-            size = os.fstat(file.fileno()).st_size if path.is_file() else MOST_BYTES
-            data = file.read(min(size, MOST_BYTES) + 1)
+            size = os.fstat(file.fileno()).st_size if path.is_file() else MOST_RECORDING_BYTES
+            data = file.read(min(size, MOST_RECORDING_BYTES) + 1)
     except OSError as error:
         raise RecordingError(path, error.strerror or str(error)) from None
-    if len(data) > MOST_BYTES:
+    if len(data) > MOST_RECORDING_BYTES:
         raise too_large(path)
     return data
 
@@ -144,14 +150,14 @@ def open_stream(data: bytes, path: Path) -> tuple[RecordingHeader, Iterator[pa.R
         raise RecordingError(
             path, "is cut off inside its header" if cut else "is not a robobt recording"
         ) from None
-    if metadata.get(_FORMAT) != FORMAT.encode():
-        raise RecordingError(path, _FOREIGN)
-    version = metadata.get(_VERSION, b"").decode("utf-8", "replace")
+    if metadata.get(_FORMAT_KEY) != RECORDING_FORMAT.encode():
+        raise RecordingError(path, _NO_RECORDING)
+    version = metadata.get(_VERSION_KEY, b"").decode("utf-8", "replace")
     if version not in _READ:
         problem = f"{version!r} cannot be read by robobt {__version__}, which reads {' and '.join(_READ)}"
         raise RecordingError(path, problem, field="version")
     try:
-        header = RecordingHeader.model_validate_json(metadata.get(_HEADER, b""))
+        header = RecordingHeader.model_validate_json(metadata.get(_HEADER_KEY, b""))
     except ValidationError as error:
         raise invalid(path, error) from None
     if not schema.equals(_schema_of(header, version)):
@@ -163,7 +169,7 @@ def open_stream(data: bytes, path: Path) -> tuple[RecordingHeader, Iterator[pa.R
 
 
 def _batches(source: pa.BufferReader, schema: pa.Schema, path: Path, ended: bool) -> Iterator[pa.RecordBatch]:
-    unpacked, most = 0, min(MOST_BYTES, _SMALL + _RATIO * source.size())
+    unpacked, most = 0, min(MOST_RECORDING_BYTES, _SMALL + _RATIO * source.size())
     while True:
         start = source.tell()
         try:
@@ -210,7 +216,7 @@ def _unpacked_size(message: pa.Message) -> int:
     return total
 
 
-def too_large(path: Path, most: int = MOST_BYTES) -> RecordingError:
+def too_large(path: Path, most: int = MOST_RECORDING_BYTES) -> RecordingError:
     """Return the error for a file larger than any match's recording."""
     return RecordingError(path, f"is larger than {most >> 20} MiB unpacked, as no match is")
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pyarrow as pa
 
-from robobt.match.recording.numbers import BALL, COMMAND
+from robobt.match.recording.numbers import BALL_NUMBERS, COMMAND_NUMBERS
 
 BALL_3 = 4
 """Values per ball: x, y, vx, vy."""
@@ -17,10 +17,10 @@ COMMAND_3 = 5
 def from_version_3(batch: pa.RecordBatch, robots: int, schema: pa.Schema) -> pa.RecordBatch:
     """Return a batch of this many robots with the columns of ``schema``, the current one."""
     places = {
-        "truth": [BALL_3] * (BALL - BALL_3),
-        "observed": [BALL_3] * (BALL - BALL_3),
+        "truth": [BALL_3] * (BALL_NUMBERS - BALL_3),
+        "observed": [BALL_3] * (BALL_NUMBERS - BALL_3),
         # In front of the flags.
-        "commands": [COMMAND_3 * slot - 1 for slot in range(1, robots + 1)] * (COMMAND - COMMAND_3),
+        "commands": [COMMAND_3 * slot - 1 for slot in range(1, robots + 1)] * (COMMAND_NUMBERS - COMMAND_3),
     }
     columns = [
         _widened(batch[name], places[name], schema.field(name).type) if name in places else batch[name]

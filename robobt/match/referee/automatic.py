@@ -14,7 +14,7 @@ from robobt.match.referee.rules.penalty_kick import PenaltyKick
 from robobt.match.referee.rules.placement import PlacementInterference, PlacementSucceeded
 from robobt.match.referee.rules.play_goes_on import NoProgress, TooManyRobots
 from robobt.match.referee.rules.restart_distances import AreaDistance, KickPointDistance, StopSpeed
-from robobt.match.referee.scene import Phase, Scene
+from robobt.match.referee.scene import PlayPhase, RefereeScene
 from robobt.match.referee.settings import RefereeSettings, in_seconds
 from robobt.world.division import Division, division_of
 from robobt.world.field import FieldGeometry
@@ -44,9 +44,9 @@ class AutomaticReferee:
         but: tuple[type[Rule], ...] = (),
     ) -> None:
         settings = settings or RefereeSettings()
-        self.scene = Scene(field, settings)
+        self.scene = RefereeScene(field, settings)
         rules = [rule for rule in rules_of(division_of(field), settings) if not isinstance(rule, but)]
-        self._rules = {phase: [rule for rule in rules if phase in rule.phases] for phase in Phase}
+        self._rules = {phase: [rule for rule in rules if phase in rule.phases] for phase in PlayPhase}
 
     def watch(self, frame: Frame, game: GameState) -> Sequence[RefereeEvent]:
         """Return the events in the next frame.

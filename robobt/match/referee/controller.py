@@ -11,7 +11,7 @@ from robobt.match.referee.events import Decision, EventKind, RefereeEvent
 from robobt.match.referee.openings import opening_of
 from robobt.match.referee.positions import ball_placed, needs_placement, ready, spot_free, stop_clear
 from robobt.match.referee.requests import Requests
-from robobt.match.referee.restarts import PLACE, PREPARE, goal_kick, kickoff, penalty
+from robobt.match.referee.restarts import PLACEMENT_COMMANDS, PREPARE, goal_kick, kickoff, penalty
 from robobt.match.referee.settings import RefereeSettings
 from robobt.match.referee.state import MatchState
 from robobt.match.referee.verdicts import HIGHEST_GOAL, PENALTY_BREACHES, resumption_after
@@ -24,13 +24,13 @@ from robobt.world.state import Frame
 _SPOT_PATIENCE = 3.0
 """The ball is placed by hand after this time even if a robot stands on the spot [s]."""
 
-_HALT_TIME = 2.0
+HALT_TIME = 2.0
 """Duration of a HALT, in which robots have to brake [s]. Source: SSL rules."""
 
-_SLACK = 1e-9
+_CLOCK_ROUNDING = 1e-9
 """Tolerance for times, which are sums of control periods [s]."""
 
-_PLACING, _PREPARING = frozenset(PLACE.values()), frozenset(PREPARE.values())
+_PLACING, _PREPARING = frozenset(PLACEMENT_COMMANDS.values()), frozenset(PREPARE.values())
 
 
 class Controller:
@@ -181,7 +181,7 @@ class Controller:
             state.placing.begin(resumption)
         if record.too_close > 1:
             record.too_close = 0
-            state.halt(_HALT_TIME)
+            state.halt(HALT_TIME)
         else:
             state.wait()
 
@@ -190,7 +190,7 @@ class Controller:
     def _judge(self, frame: Frame) -> None:
         state = self.state
         command = state.game.command
-        over = state.deadline is not None and state.time >= state.deadline - _SLACK
+        over = state.deadline is not None and state.time >= state.deadline - _CLOCK_ROUNDING
         if state.running:
             self._judge_kick(over)
         elif command is RefereeCommand.STOP:
@@ -238,7 +238,7 @@ class Controller:
             self._impatient or settings.placement == "by_hand" or stop_clear(frame, state.game, following)
         )
         wait = 0.0 if state.placing.done else settings.stop_time
-        if self._lasted(clear, wait) and state.elapsed >= state.least - _SLACK:
+        if self._lasted(clear, wait) and state.elapsed >= state.least - _CLOCK_ROUNDING:
             state.resume()
 
     def _ball_ready(self, frame: Frame) -> bool:
@@ -263,7 +263,7 @@ class Controller:
     @property
     def _impatient(self) -> bool:
         longest = self._settings.kickoff_wait
-        return longest is not None and self.state.elapsed >= longest - _SLACK
+        return longest is not None and self.state.elapsed >= longest - _CLOCK_ROUNDING
 
     def _lasted(self, clear: bool, seconds: float) -> bool:
         """Return whether play could have continued for this time [s]; ``clear`` says whether it could now."""
@@ -273,7 +273,7 @@ class Controller:
             return False
         if state.clear is None:
             state.clear = state.time
-        return state.time - state.clear >= seconds - _SLACK
+        return state.time - state.clear >= seconds - _CLOCK_ROUNDING
 
     def _end_stage(self, following: Stage) -> None:
         state = self.state

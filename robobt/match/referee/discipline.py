@@ -11,7 +11,7 @@ from collections.abc import Iterator
 from robobt.match.referee.events import EventKind, RefereeEvent
 from robobt.match.referee.settings import RefereeSettings
 from robobt.match.referee.teams import TeamRecord
-from robobt.match.referee.verdicts import FOULS, MEMORY, SOFT_FOULS
+from robobt.match.referee.verdicts import FOUL_MEMORY, FOULS, SOFT_FOULS
 from robobt.world.division import Division
 from robobt.world.game import Team
 
@@ -57,7 +57,7 @@ class Discipline:
     def fouled_lately(self, team: Team, time: float) -> bool:
         """Return whether a foul of the last two seconds that did not stop play annuls a team's goal."""
         last = self.records[team].last_foul
-        return last is not None and time - last <= MEMORY
+        return last is not None and time - last <= FOUL_MEMORY
 
     @staticmethod
     def _about(kind: EventKind, team: Team, time: float, **details: str) -> RefereeEvent:

@@ -8,7 +8,7 @@ import numpy as np
 
 from robobt.match.referee.restarts import (
     LINE_GAP,
-    PLACE,
+    PLACEMENT_COMMANDS,
     Resumption,
     drop_ball,
     free_kick,
@@ -43,7 +43,7 @@ def opening_of(
         return Opening(Stage.NORMAL_FIRST_HALF, RefereeCommand.STOP, kick)
     if settings.opening == "ball_placement":
         kick = free_kick(field, team, *_spot(settings, field, ball, generator))
-        return Opening(Stage.NORMAL_FIRST_HALF, PLACE[team], kick)
+        return Opening(Stage.NORMAL_FIRST_HALF, PLACEMENT_COMMANDS[team], kick)
     if settings.opening == "penalty":
         return Opening(Stage.NORMAL_FIRST_HALF, RefereeCommand.STOP, penalty(field, team))
     if settings.opening == "shoot_out":

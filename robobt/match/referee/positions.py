@@ -21,16 +21,16 @@ _SPOT_TOLERANCE = 0.05
 _AT_REST = 0.05
 """A ball slower than this counts as at rest for placement by hand [m/s]."""
 
-_STILL = 0.2
+STILL_BALL_SPEED = 0.2
 """A ball slower than this does not prevent play from continuing [m/s]."""
 
-_NEAR_SPOT = 1.0
+NEAR_SPOT = 1.0
 """A ball closer to its spot than this need not be placed [m]."""
 
-_AREA_GAP = 0.7
+PLACEMENT_AREA_GAP = 0.7
 """A ball closer to a defence area than this has to be placed [m]."""
 
-_KEEP_OFF = STOP_DISTANCE + ROBOT_RADIUS - 0.05
+_STOP_BALL_DISTANCE = STOP_DISTANCE + ROBOT_RADIUS - 0.05
 """Least distance of robots' centres from the ball [m]."""
 
 _PENALTY_MARK = 0.15
@@ -57,10 +57,10 @@ def needs_placement(frame: Frame, field: FieldGeometry, spot: Point) -> bool:
     """Return whether the ball has to be placed before a free kick or forced start at ``spot``."""
     x, y = frame.ball.position
     return (
-        frame.ball.speed >= _STILL
-        or distance((x, y), spot) > _NEAR_SPOT
+        frame.ball.speed >= STILL_BALL_SPEED
+        or distance((x, y), spot) > NEAR_SPOT
         or not field.contains(x, y)
-        or min(area_distance(field, team, x, y) for team in Team) < _AREA_GAP
+        or min(area_distance(field, team, x, y) for team in Team) < PLACEMENT_AREA_GAP
     )
 
 
@@ -79,7 +79,7 @@ def stop_clear(frame: Frame, game: GameState, following: Resumption) -> bool:
             continue
         for robot in robots:
             dx, dy = robot.x - ball.x, robot.y - ball.y
-            if dx * dx + dy * dy < _KEEP_OFF * _KEEP_OFF:
+            if dx * dx + dy * dy < _STOP_BALL_DISTANCE * _STOP_BALL_DISTANCE:
                 return False
     return True
 

@@ -16,7 +16,7 @@ from robobt.world.rules import own_side
 LINE_GAP = 0.2
 """Least distance of a restart from the lines [m]."""
 
-AREA_GAP = 1.0
+RESTART_AREA_GAP = 1.0
 """Least distance of a restart from a defence area [m]."""
 
 GOAL_KICK_DISTANCE = 1.0
@@ -50,8 +50,8 @@ def free_kick_spot(field: FieldGeometry, x: float, y: float) -> Point:
     most_x, most_y = field.half_length - LINE_GAP, field.half_width - LINE_GAP
     x = min(most_x, max(-most_x, x))
     y = min(most_y, max(-most_y, y))
-    front = field.half_length - field.defense_depth - AREA_GAP
-    side = field.defense_width / 2 + AREA_GAP
+    front = field.half_length - field.defense_depth - RESTART_AREA_GAP
+    side = field.defense_width / 2 + RESTART_AREA_GAP
     into_front, into_side = abs(x) - front, side - abs(y)
     if into_front <= 0.0 or into_side <= 0.0:
         return (x, y)
@@ -109,7 +109,10 @@ PREPARE = {
 }
 """The command that lets everybody take position for a kick-off or a penalty kick."""
 
-PLACE = {Team.BLUE: RefereeCommand.BALL_PLACEMENT_BLUE, Team.YELLOW: RefereeCommand.BALL_PLACEMENT_YELLOW}
+PLACEMENT_COMMANDS = {
+    Team.BLUE: RefereeCommand.BALL_PLACEMENT_BLUE,
+    Team.YELLOW: RefereeCommand.BALL_PLACEMENT_YELLOW,
+}
 """The command that lets a team place the ball."""
 
 TIME_OUT = {Team.BLUE: RefereeCommand.TIMEOUT_BLUE, Team.YELLOW: RefereeCommand.TIMEOUT_YELLOW}

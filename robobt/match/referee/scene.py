@@ -14,7 +14,7 @@ from robobt.world.rules import ball_out
 from robobt.world.state import BallState, Frame, RobotId, RobotState
 
 
-class Phase(Enum):
+class PlayPhase(Enum):
     """The phases of play; each rule is checked in some of them."""
 
     HALT = auto()
@@ -31,7 +31,7 @@ class Phase(Enum):
     PLAY = auto()
 
 
-class Scene:
+class RefereeScene:
     """The sequence of frames, in world coordinates, seen from blue's side.
 
     Attributes:
@@ -57,7 +57,7 @@ class Scene:
         self.frame = Frame(0.0, field, BallState(0.0, 0.0))
         self.before: Frame | None = None
         self.game = GameState(RefereeCommand.HALT, may_touch=False)
-        self.phase = Phase.HALT
+        self.phase = PlayPhase.HALT
         self.since = 0.0
         self.stopped = 0.0
         self.penalty: Team | None = None
@@ -85,14 +85,14 @@ class Scene:
             return False
         self._state = state
         phase = self._phase_of(game)
-        if phase is self.phase is Phase.PENALTY:
+        if phase is self.phase is PlayPhase.PENALTY:
             # The ball has moved, so the kick continues.
             return False
-        if phase in _STOPPED and self.phase not in _STOPPED:
+        if phase in _STOPPED_PHASES and self.phase not in _STOPPED_PHASES:
             self.stopped = frame.time
         self.touches.forget_heights()
         self.phase, self.since = phase, frame.time
-        if phase is Phase.PENALTY:
+        if phase is PlayPhase.PENALTY:
             self.penalty = game.restart_team
         return True
 
@@ -130,26 +130,26 @@ class Scene:
                 return True
         return False
 
-    def _phase_of(self, game: GameState) -> Phase:
+    def _phase_of(self, game: GameState) -> PlayPhase:
         if game.command in _PHASES:
             return _PHASES[game.command]
         if game.command is RefereeCommand.NORMAL_START and (
-            game.restart is Restart.PENALTY or (game.restart is None and self.phase is Phase.PENALTY)
+            game.restart is Restart.PENALTY or (game.restart is None and self.phase is PlayPhase.PENALTY)
         ):
-            return Phase.PENALTY
-        return Phase.PLAY if game.restart is None else Phase.KICK
+            return PlayPhase.PENALTY
+        return PlayPhase.PLAY if game.restart is None else PlayPhase.KICK
 
 
 _PHASES = {
-    RefereeCommand.HALT: Phase.HALT,
-    RefereeCommand.TIMEOUT_BLUE: Phase.HALT,
-    RefereeCommand.TIMEOUT_YELLOW: Phase.HALT,
-    RefereeCommand.STOP: Phase.STOP,
-    RefereeCommand.PREPARE_KICKOFF_BLUE: Phase.PREPARE,
-    RefereeCommand.PREPARE_KICKOFF_YELLOW: Phase.PREPARE,
-    RefereeCommand.PREPARE_PENALTY_BLUE: Phase.PREPARE,
-    RefereeCommand.PREPARE_PENALTY_YELLOW: Phase.PREPARE,
-    RefereeCommand.BALL_PLACEMENT_BLUE: Phase.PLACEMENT,
-    RefereeCommand.BALL_PLACEMENT_YELLOW: Phase.PLACEMENT,
+    RefereeCommand.HALT: PlayPhase.HALT,
+    RefereeCommand.TIMEOUT_BLUE: PlayPhase.HALT,
+    RefereeCommand.TIMEOUT_YELLOW: PlayPhase.HALT,
+    RefereeCommand.STOP: PlayPhase.STOP,
+    RefereeCommand.PREPARE_KICKOFF_BLUE: PlayPhase.PREPARE,
+    RefereeCommand.PREPARE_KICKOFF_YELLOW: PlayPhase.PREPARE,
+    RefereeCommand.PREPARE_PENALTY_BLUE: PlayPhase.PREPARE,
+    RefereeCommand.PREPARE_PENALTY_YELLOW: PlayPhase.PREPARE,
+    RefereeCommand.BALL_PLACEMENT_BLUE: PlayPhase.PLACEMENT,
+    RefereeCommand.BALL_PLACEMENT_YELLOW: PlayPhase.PLACEMENT,
 }
-_STOPPED = frozenset({Phase.STOP, Phase.PLACEMENT, Phase.HALT, Phase.PREPARE})
+_STOPPED_PHASES = frozenset({PlayPhase.STOP, PlayPhase.PLACEMENT, PlayPhase.HALT, PlayPhase.PREPARE})

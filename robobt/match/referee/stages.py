@@ -12,7 +12,7 @@ from robobt.world.game import Stage, Team
 _MERCY_GOALS, _MERCY_LEAD = 10, 2
 """Goals and lead of a team at which a match ends early. Source: SSL rules."""
 
-_ATTEMPTS = 10
+_SHOOT_OUT_KICKS = 10
 """Number of kicks of a shoot-out, of both teams together, before the score decides. Source: SSL rules."""
 
 _BEGUN = {
@@ -93,7 +93,7 @@ class Stages:
         """Return the stage that follows at this stoppage, or None if the present one continues."""
         most, lead = max(scores), abs(scores[0] - scores[1])
         if self.shoot_out:
-            decided = self.attempts >= _ATTEMPTS and self.attempts % 2 == 0 and lead > 0
+            decided = self.attempts >= _SHOOT_OUT_KICKS and self.attempts % 2 == 0 and lead > 0
             return Stage.POST_GAME if decided else None
         if self._settings.half_length is None:
             return None

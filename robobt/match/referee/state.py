@@ -13,7 +13,7 @@ import numpy as np
 from robobt.match.referee.discipline import Discipline
 from robobt.match.referee.events import EventKind, RefereeEvent
 from robobt.match.referee.placing import Placing
-from robobt.match.referee.restarts import PLACE, TIME_OUT, Resumption, kickoff, penalty
+from robobt.match.referee.restarts import PLACEMENT_COMMANDS, TIME_OUT, Resumption, kickoff, penalty
 from robobt.match.referee.settings import RefereeSettings, in_seconds
 from robobt.match.referee.stages import Stages
 from robobt.world.division import division_of
@@ -174,7 +174,7 @@ class MatchState:
 
     def place_by(self, team: Team) -> None:
         """Let a team place the ball."""
-        self.give(PLACE[team], self.placing.deadline)
+        self.give(PLACEMENT_COMMANDS[team], self.placing.deadline)
         self.game = replace(self.game, restart=Restart.BALL_PLACEMENT, restart_team=team, may_touch=True)
 
     def resume(self) -> None:

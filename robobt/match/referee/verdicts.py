@@ -30,7 +30,7 @@ SOFT_FOULS = frozenset(
         _K.BOT_CRASH_DRAWN,
     }
 )
-"""Fouls that do not stop play; a team's goal within :data:`MEMORY` after one does not count."""
+"""Fouls that do not stop play; a team's goal within :data:`FOUL_MEMORY` after one does not count."""
 
 FREE_KICK_FOULS = frozenset(
     {
@@ -72,7 +72,7 @@ PENALTY_BREACHES = frozenset(
 )
 """Offences that end a penalty kick: a goal when the defending team commits them, else a failure."""
 
-MEMORY = 2.0
+FOUL_MEMORY = 2.0
 """Time for which a foul that did not stop play annuls its team's goals [s]. Source: SSL rules."""
 
 HIGHEST_GOAL = 0.15

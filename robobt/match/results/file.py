@@ -21,7 +21,7 @@ from robobt.match.results.results import MatchResult, result_from
 from robobt.match.scenario.scenario import Scenario
 from robobt.plays.files import contents_of
 
-FORMAT = "robobt-results"
+RESULTS_FORMAT = "robobt-results"
 
 _log = logging.getLogger(__name__)
 
@@ -79,7 +79,7 @@ class TrialsFile(Closing, Generic[R]):
         self.done: dict[int, R] = {}
         self._kind = TypeAdapter(kind)
         head: dict[str, object] = {
-            "format": FORMAT,
+            "format": RESULTS_FORMAT,
             "scenario": scenario.name,
             "digest": scenario_digest(scenario),
             "seed": seed,
@@ -151,7 +151,7 @@ class TrialsFile(Closing, Generic[R]):
         return kept
 
     def _check_head(self, found: object, head: dict[str, object]) -> None:
-        if not isinstance(found, dict) or found.get("format") != FORMAT:
+        if not isinstance(found, dict) or found.get("format") != RESULTS_FORMAT:
             raise ResultsFileError(f"{self.path}: not a file of results; give another name")
         for key in dict.fromkeys([*head, "world", "referee"]):
             if found.get(key) != head.get(key):

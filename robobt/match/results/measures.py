@@ -10,10 +10,8 @@ from struct import pack
 from robobt.match.results.results import RobotResult
 from robobt.world.command import RobotCommand
 from robobt.world.game import GameState, Team
+from robobt.world.rules import KICKED_SHARE, KICKED_SPEED
 from robobt.world.state import BallState, Frame, RobotId, RobotState
-
-_KICKED_SHARE, _SURELY_KICKED = 0.25, 1.0
-"""Share of the commanded speed, or speed [m/s], at which a ball that leaves its robot counts as kicked."""
 
 
 class Measures:
@@ -71,7 +69,7 @@ class Measures:
         away = _leaving(robot, truth.ball)
         before = self._outgoing.get(identity, 0.0)
         self._outgoing[identity] = away
-        enough = min(_KICKED_SHARE * speed, _SURELY_KICKED)
+        enough = min(KICKED_SHARE * speed, KICKED_SPEED)
         if away < enough or before >= enough or truth.last_touch not in (None, identity):
             return
         reach = 0.15 + (away + robot.speed) * truth.period

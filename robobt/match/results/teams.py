@@ -22,27 +22,27 @@ from robobt.world.protocol import ReportedEvent
 from robobt.world.rules import ball_out
 from robobt.world.state import BallState, Frame, RobotId, RobotState
 
-_KICKED = 1.0
+_KICKED_BALL_SPEED = 1.0
 """A ball that leaves a robot faster than this counts as kicked, not lost [m/s]."""
 
 _BOUNCES = 0.1
 """A ball that leaves a robot within this time, no faster than it came, counts as bounced off [s]."""
 
-_SHOT = 2.0
+_SHOT_ON_GOAL_SPEED = 2.0
 """A ball faster than this on its way into the goal counts as a shot [m/s]."""
 
-_MEANT = 1.0
+_PASS_LINE_DISTANCE = 1.0
 """A kick whose line passes a team-mate ahead within this distance counts as a pass [m]."""
 
 _SHORTEST_PASS = 0.3
 """A ball that a team-mate touches closer than this to the kick counts as handed over, not passed [m]."""
 
-_TAKEN = (Restart.KICKOFF, Restart.FREE_KICK)
+_COUNTED_RESTARTS = (Restart.KICKOFF, Restart.FREE_KICK)
 
 _STRIDE = 0.1
 """Robots' distance is measured in straight pieces of this duration [s]."""
 
-_JUMP = 1.0
+_TELEPORT_DISTANCE = 1.0
 """A robot that moved farther than this within one piece was placed there by hand [m]."""
 
 
@@ -167,7 +167,7 @@ class TeamStatistics:
             known = self._marked[1]
             for robot, place in places.items():
                 way = distance(known.get(robot, place), place)
-                if way < _JUMP:
+                if way < _TELEPORT_DISTANCE:
                     self._teams[robot.team].distance += way
         self._marked = frame.time, places
 
@@ -176,7 +176,7 @@ class TeamStatistics:
         if placing is not None and placing is not self._placing:
             self._teams[placing].placements += 1
         self._placing = placing
-        if game.restart in _TAKEN and game.may_touch and not game.stopped:
+        if game.restart in _COUNTED_RESTARTS and game.may_touch and not game.stopped:
             takers = [robot for robot in self._touches.now if robot.team is game.restart_team]
             if self._pending is None or takers:
                 self._taker = takers[0] if takers else None
@@ -227,17 +227,17 @@ class TeamStatistics:
     def _left(self, kicker: RobotId, frame: Frame) -> None:
         """Decide whether the ball that has just left a robot was lost, shot or passed."""
         before = self._before
-        if before is None or frame.ball.speed < _KICKED:
+        if before is None or frame.ball.speed < _KICKED_BALL_SPEED:
             return
         since, speed = self._came
         if frame.time - since < _BOUNCES and frame.ball.speed <= speed:
             return
         view, seen = before.seen_by(kicker.team), frame.seen_by(kicker.team)
         me = view.robot(kicker.number)
-        if me is None or _going_away(seen.ball, me) < _KICKED:
+        if me is None or _going_away(seen.ball, me) < _KICKED_BALL_SPEED:
             return
         at = _goal_crossing(seen)
-        if at is not None and seen.ball.speed >= _SHOT:
+        if at is not None and seen.ball.speed >= _SHOT_ON_GOAL_SPEED:
             figures = self._teams[kicker.team]
             figures.shots_on_goal += 1
             figures.expected_goals += self._chance(view, me, at)
@@ -268,6 +268,6 @@ def _is_pass(view: Frame, me: RobotState) -> bool:
     ux, uy = ball.vx / speed, ball.vy / speed
     for mate in view.own:
         dx, dy = mate.x - ball.x, mate.y - ball.y
-        if mate.id != me.id and ux * dx + uy * dy > 0.0 and abs(ux * dy - uy * dx) < _MEANT:
+        if mate.id != me.id and ux * dx + uy * dy > 0.0 and abs(ux * dy - uy * dx) < _PASS_LINE_DISTANCE:
             return True
     return False

@@ -18,7 +18,7 @@ from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS, RobotId
 HELD_DISTANCE = 0.098
 """Distance from a robot's centre to a ball in its mouth at the start [m]."""
 
-_TRIES = 1000
+_PLACING_TRIES = 1000
 
 
 def check_starts(field: FieldGeometry, robots: Mapping[RobotId, RobotStart], ball: BallStart) -> None:
@@ -104,7 +104,7 @@ class Placer:
         position = self._starts[robot].position
         # The ball in its mouth needs space too, for every heading.
         radius = ROBOT_RADIUS + (2 * BALL_RADIUS if robot == self._holder else 0.0)
-        for _ in range(_TRIES):
+        for _ in range(_PLACING_TRIES):
             place = _turned(robot, self._sample(position, robot))
             if self._free(place, radius):
                 self._put_robot(robot, place)
@@ -114,7 +114,7 @@ class Placer:
     def _sample_ball(self) -> None:
         position = self._ball_start.position
         assert isinstance(position, Anywhere | Box | Disc)
-        for _ in range(_TRIES):
+        for _ in range(_PLACING_TRIES):
             if isinstance(position, Anywhere):
                 place = position.sample(self._rng, self._field)
                 free = self._clear(place, BALL_RADIUS)
@@ -159,7 +159,7 @@ class Placer:
 
 
 def _full(position: object) -> str:
-    return f"no free place {position} found in {_TRIES} tries"
+    return f"no free place {position} found in {_PLACING_TRIES} tries"
 
 
 def check_inside(position: object, field: FieldGeometry, where: str) -> None:
@@ -193,7 +193,7 @@ def _field_of(robot: RobotId, robots: Mapping[RobotId, RobotStart]) -> str:
 
 def _robot_called(name: str | None) -> RobotId | None:
     team, _, number = (name or "").partition(" ")
-    return RobotId(Team(team), int(number)) if team in set(Team) and number in _NUMBERS else None
+    return RobotId(Team(team), int(number)) if team in set(Team) and number in _ROBOT_NUMBERS else None
 
 
-_NUMBERS = frozenset(str(number) for number in range(16))
+_ROBOT_NUMBERS = frozenset(str(number) for number in range(16))

@@ -18,7 +18,7 @@ from pydantic import (
 
 from robobt.config.errors import FieldError, RobobtError, message_of
 from robobt.config.validation import first_problem
-from robobt.match.scenario.starts import Part, RobotStart
+from robobt.match.scenario.starts import RobotStart, ScenarioPart
 from robobt.plays.files import build_play, find_play, problem_with_play
 from robobt.plays.mistakes import mistake_in_play
 from robobt.plays.private_files import private_files
@@ -51,7 +51,7 @@ class _Unplayed:
         return (type(self), ())
 
 
-class RobotSetup(Part):
+class RobotSetup(ScenarioPart):
     """One robot: its number, what it plays and where it starts."""
 
     number: int = Field(ge=0, le=15, description="number on its team")
@@ -189,7 +189,7 @@ class _SubstitutionError(RobobtError, ValueError):
     """A substitution rule that does not fit the tree."""
 
 
-class Robots(Part):
+class Robots(ScenarioPart):
     """The robots of both teams."""
 
     blue: tuple[RobotSetup, ...] = Field((), max_length=11, strict=False)

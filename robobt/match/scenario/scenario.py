@@ -12,12 +12,13 @@ from pydantic import Field, PrivateAttr, ValidationError, field_validator, model
 
 from robobt.config.errors import ConfigError, FieldError, one_line, short_repr, unknown_name
 from robobt.config.resources import bundled_scenarios
+from robobt.config.seeds import MAX_SEED as MAX_SEED
 from robobt.config.validation import first_problem
 from robobt.config.yaml import read_yaml
 from robobt.match.referee.settings import RefereeSettings
 from robobt.match.scenario.placing import Placer, check_inside, check_starts
 from robobt.match.scenario.robots import UNBUILT, Robots, RobotSetup
-from robobt.match.scenario.starts import BallStart, Part, RobotStart
+from robobt.match.scenario.starts import BallStart, RobotStart, ScenarioPart
 from robobt.models.find import rename_models
 from robobt.plays.files import rename_play
 from robobt.world.field import DIVISION_B, FIELDS, FieldGeometry
@@ -28,15 +29,12 @@ from robobt.world.state import RobotId
 MAX_TRIALS = 100_000
 """Largest number of trials of a scenario or a run."""
 
-MAX_SEED = 2**53 - 1
-"""Largest seed, which every JSON reader still reads exactly."""
-
 
 class ScenarioError(ConfigError):
     """A scenario cannot be played; ``file`` is the scenario's name if it came from no file."""
 
 
-class Ends(Part):
+class Ends(ScenarioPart):
     """Conditions that end a trial; the first one that is met ends it."""
 
     time_limit: float = Field(gt=0, le=3600, description="longest trial [s]")
@@ -54,7 +52,7 @@ class Ends(Part):
     placement: bool = Field(False, description="a ball placement is over, whether it succeeded or not")
 
 
-class Scenario(Part):
+class Scenario(ScenarioPart):
     """A set-up for matches that can be played any number of times.
 
     A robot's start is in its own team's view (own goal at -x), the ball's in

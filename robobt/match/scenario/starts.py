@@ -16,7 +16,7 @@ from robobt.world.field import FieldGeometry
 from robobt.world.geometry import Point, direction
 
 
-class Part(Settings):
+class ScenarioPart(Settings):
     """A part of a scenario: immutable, strictly typed, without unknown keys, with finite numbers."""
 
     model_config = ConfigDict(strict=True)
@@ -40,7 +40,7 @@ _Distances = Annotated[
 _Angles = Annotated[tuple[_Angle, _Angle], AfterValidator(_ordered)]
 
 
-class Box(Part):
+class Box(ScenarioPart):
     """A uniform distribution over a rectangle."""
 
     x: _Range = Field(description="least and greatest x [m]")
@@ -54,7 +54,7 @@ class Box(Part):
         return f"in the box x {self.x[0]:g} to {self.x[1]:g} m, y {self.y[0]:g} to {self.y[1]:g} m"
 
 
-class Disc(Part):
+class Disc(ScenarioPart):
     """A uniform distribution over a disc."""
 
     center: Place = Field(description="x, y [m]")
@@ -69,7 +69,7 @@ class Disc(Part):
         return f"within {self.radius:g} m of ({self.center[0]:g}, {self.center[1]:g}) m"
 
 
-class Around(Part):
+class Around(ScenarioPart):
     """A uniform distance and bearing from a point."""
 
     around: Literal["ball", "own goal", "their goal"] = Field(description="the object that it is around")
@@ -90,7 +90,7 @@ class Around(Part):
         return f"{self.distance[0]:g} to {self.distance[1]:g} m from the {self.around}{turned}"
 
 
-class Anywhere(Part):
+class Anywhere(ScenarioPart):
     """A uniform distribution of the ball within the walls, with a share at places that are hard to reach."""
 
     at_walls: float = Field(
@@ -159,7 +159,7 @@ Heading = Annotated[
 """A fixed heading, a range of headings, or a target to face [rad]."""
 
 
-class RobotStart(Part):
+class RobotStart(ScenarioPart):
     """A robot's pose at the start, in its own team's view."""
 
     position: Position = Field(
@@ -186,7 +186,7 @@ class RobotStart(Part):
         return f"{_say(self.position)}, heading {_say_heading(self.heading)}"
 
 
-class BallStart(Part):
+class BallStart(ScenarioPart):
     """The ball at the start, in world coordinates, which are blue's view."""
 
     position: Position | None = Field(

@@ -11,12 +11,11 @@ from torch import Tensor
 from torch.utils._python_dispatch import TorchDispatchMode
 from torch.utils._pytree import tree_leaves, tree_map
 
-from robobt.models.checks.limits import ELEMENT, MAX_BYTES, OTHER_TYPE, largest_work
+from robobt.models.checks.limits import ELEMENT, MAX_OUTPUT_BYTES, OTHER_TYPE, RECURRENT_GATES, largest_work
 from robobt.models.checks.operations import MOST_PIECES, TRAPPING
 from robobt.models.file import ModelError
 
 _CONTRACTIONS = frozenset({"mm", "addmm", "bmm", "baddbmm", "addmv", "mv", "dot", "linear", "matmul"})
-_GATES = 8
 
 
 class Bounds(TorchDispatchMode):  # type: ignore[no-untyped-call]
@@ -86,7 +85,7 @@ class Bounds(TorchDispatchMode):  # type: ignore[no-untyped-call]
         self._work += _work(name, tensors, found)
         if all(each.alias_info is None for each in func._schema.returns):
             self._bytes += sum([math.prod(one.shape) * one.element_size() for one in found])
-        if self._bytes > MAX_BYTES or self._work > self._largest_work:
+        if self._bytes > MAX_OUTPUT_BYTES or self._work > self._largest_work:
             raise ModelError(f"takes more memory or time than a model does, at aten::{name}")
 
     def _check_division(self, name: str, divided: Any, divisor: Any) -> None:
@@ -122,7 +121,7 @@ def _work(name: str, tensors: Sequence[Tensor], found: Sequence[Tensor]) -> int:
     taken, made = sum([one.numel() for one in tensors]), sum([one.numel() for one in found])
     steps = 0
     if "rnn" in name:
-        steps = _GATES * made * max([size for one in tensors for size in one.shape], default=1)
+        steps = RECURRENT_GATES * made * max([size for one in tensors for size in one.shape], default=1)
     elif name in _CONTRACTIONS:
         # The axis that both factors have is no longer than the longest of either.
         factors = tensors[-2:] if "add" in name else tensors[:2]

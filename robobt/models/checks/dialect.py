@@ -8,15 +8,15 @@ from dataclasses import dataclass, field
 
 from robobt.models.file import ModelError
 
-_TAKEN = """
+_TAKEN_NAMES = """
 CONSTANTS Dict Final List Module NamedTuple NoneType Optional Tensor Tuple __torch__ annotate bool float
 getattr inf int nan ops range str torch unchecked_cast uninitialized
 """
 
-TAKEN = frozenset(_TAKEN.split())
+TAKEN = frozenset(_TAKEN_NAMES.split())
 """Names that have a meaning of their own."""
 
-_NAME = re.compile(r"(?!__)\w+")
+_NAME_PATTERN = re.compile(r"(?!__)\w+")
 _PLAIN_TYPES = frozenset({"Tensor", "int", "float", "bool", "str", "NoneType"})
 _GENERIC_TYPES = frozenset({"Optional", "List", "Tuple", "Dict"})
 
@@ -37,7 +37,7 @@ class Class:
 
 
 @dataclass
-class Sources:
+class ArchiveCode:
     """The code of an archive.
 
     Attributes:
@@ -53,7 +53,7 @@ class Sources:
     constants: int = 0
 
 
-def check_type(kind: ast.expr, sources: Sources) -> None:
+def check_type(kind: ast.expr, sources: ArchiveCode) -> None:
     """Check that an expression is a type that networks use."""
     match kind:
         case ast.Name(id=name) if name in _PLAIN_TYPES:
@@ -99,7 +99,7 @@ def is_literal(value: ast.expr) -> bool:
 
 def plain(name: str) -> str:
     """Return a function's or class's name, unless Python or torch would call it by itself."""
-    if not _NAME.fullmatch(name):
+    if not _NAME_PATTERN.fullmatch(name):
         raise ModelError(f"has a function {name} in it, which would run while it is loaded")
     return name
 

@@ -8,8 +8,8 @@ from collections.abc import Iterable
 
 from robobt.models.checks.dialect import (
     TAKEN,
+    ArchiveCode,
     Class,
-    Sources,
     check_type,
     check_variable,
     dotted,
@@ -32,7 +32,7 @@ _WITH_TEXTS = frozenset({"torch.div", "torch.gelu"})
 """Operations with an option that is a text."""
 
 
-def check_functions(sources: Sources) -> None:
+def check_functions(sources: ArchiveCode) -> None:
     """Check all methods and functions of an archive, and count its entries in the table of constants."""
     checker = _Checker(sources)
     for qualified, one in sources.classes.items():
@@ -45,7 +45,7 @@ def check_functions(sources: Sources) -> None:
 class _Checker:
     """Goes through functions, and counts what they come to."""
 
-    def __init__(self, sources: Sources) -> None:
+    def __init__(self, sources: ArchiveCode) -> None:
         self._sources = sources
         self._costs: dict[str, int | None] = {}
 
@@ -67,7 +67,7 @@ class _Body:
     """One function, checked from its first line to its last."""
 
     def __init__(
-        self, checker: _Checker, sources: Sources, function: ast.FunctionDef, owner: str | None
+        self, checker: _Checker, sources: ArchiveCode, function: ast.FunctionDef, owner: str | None
     ) -> None:
         self._checker = checker
         self._sources = sources

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-BATCH = 64
+LARGEST_BATCH = 64
 """Largest number of observations per run of a network; larger batches are split."""
 
-MAX_BYTES = 64 * 2**20
+MAX_OUTPUT_BYTES = 64 * 2**20
 """Largest total output of all steps of a network, for a batch [bytes]."""
 
 ELEMENT = 64
@@ -14,7 +14,14 @@ ELEMENT = 64
 OTHER_TYPE = 32
 """How many times as long a product of matrices takes in other types than single precision."""
 
-_LARGEST_WORK = {1: 2**26, BATCH: 2**30}
+RECURRENT_GATES = 8
+"""How many times its output a step of a recurrent layer computes at most."""
+
+DEEPEST_NESTING = 40
+"""How deep names and objects in an archive may be nested."""
+
+
+_LARGEST_WORK = {1: 2**26, LARGEST_BATCH: 2**30}
 
 
 def largest_work(batch: int) -> int:

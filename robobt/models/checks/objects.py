@@ -5,17 +5,16 @@ from __future__ import annotations
 import ast
 from dataclasses import dataclass
 
-from robobt.models.checks.dialect import Sources, dotted
+from robobt.models.checks.dialect import ArchiveCode, dotted
+from robobt.models.checks.limits import DEEPEST_NESTING
 from robobt.models.file import ModelError
 
 MOST_VALUES = 100_000
 """A pickle with more operations or values than that is none of a network's."""
 
-_DEEPEST = 40
-
 
 @dataclass(frozen=True)
-class Name:
+class PickledName:
     """A class or function that the pickle names."""
 
     text: str
@@ -48,7 +47,7 @@ def check_plain(value: object) -> None:
     """Check that nothing in a value is nested deep or in itself, and no number too large for torch."""
     level = [value]
     total = 0
-    for _ in range(_DEEPEST):
+    for _ in range(DEEPEST_NESTING):
         inner: list[object] = []
         for one in level:
             if isinstance(one, tuple | list):
@@ -59,17 +58,17 @@ def check_plain(value: object) -> None:
                 inner += (one.attributes or {}).values()
             elif isinstance(one, int) and not -(2**63) <= one < 2**63:
                 raise ModelError("holds a number of more than 64 bits")
-            elif isinstance(one, Name | Storage):
+            elif isinstance(one, PickledName | Storage):
                 raise ModelError("holds what is no value of a network")
         total += len(inner)
         if total > MOST_VALUES:
             raise ModelError("holds more than a model does")
         level = inner
     if level:
-        raise ModelError(f"is nested more than {_DEEPEST} deep")
+        raise ModelError(f"is nested more than {DEEPEST_NESTING} deep")
 
 
-def check_objects(value: object, sources: Sources) -> None:
+def check_objects(value: object, sources: ArchiveCode) -> None:
     """Check that the objects in a value have the attributes that their classes in the code declare."""
     if isinstance(value, tuple | list):
         for one in value:

@@ -8,14 +8,21 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from robobt.models.checks.limits import BATCH, ELEMENT, MAX_BYTES, OTHER_TYPE, largest_work
+from robobt.models.checks.limits import (
+    ELEMENT,
+    LARGEST_BATCH,
+    MAX_OUTPUT_BYTES,
+    OTHER_TYPE,
+    RECURRENT_GATES,
+    largest_work,
+)
 from robobt.models.file import ModelError
 from robobt.models.protobuf import fields
 
 if TYPE_CHECKING:
     import onnx
 
-_NODES = """
+_NODE_TYPES = """
 Abs Add And ArgMax ArgMin Atan BatchNormalization Cast Ceil Celu Clip Concat Constant ConstantOfShape Cos Div
 Dropout Elu Equal Erf Exp Expand Flatten Floor GRU Gather GatherElements Gelu Gemm Greater GreaterOrEqual
 HardSigmoid HardSwish Identity LSTM LayerNormalization LeakyRelu Less LessOrEqual Log LogSoftmax MatMul Max
@@ -23,7 +30,7 @@ Mean Min Mish Mod Mul Neg Not Or PRelu Pow RNN Reciprocal ReduceL2 ReduceMax Red
 ReduceSum Relu Reshape Round Selu Shape Sigmoid Sign Sin Slice Softmax Softplus Softsign Split Sqrt Squeeze
 Sub Sum Tan Tanh Tile Transpose Unsqueeze Where Xor
 """
-_OPERATIONS = frozenset(_NODES.split())
+_OPERATIONS = frozenset(_NODE_TYPES.split())
 
 _FIELDS: Mapping[str, frozenset[str]] = {
     message: frozenset(names.split())
@@ -45,29 +52,28 @@ _FIELDS: Mapping[str, frozenset[str]] = {
 }
 """What the parts of an ONNX file may hold: weights lie in them, as dense tensors, and no graph in a graph."""
 
-_MOST_FIELDS = 50_000
+_MOST_FILE_FIELDS = 50_000
 _LONGEST_NUMBERS = 2**20
-_MOST_NODES = 2000
+_MOST_GRAPH_NODES = 2000
 _MOST_ENTRIES = 300_000
 """Entries of all vectors that nodes take and answer, biases among them."""
-_ITEM_SIZES = {1: 4, 2: 1, 3: 1, 6: 4, 7: 8, 9: 1, 10: 2, 11: 8}
+_ONNX_ITEM_SIZES = {1: 4, 2: 1, 3: 1, 6: 4, 7: 8, 9: 1, 10: 2, 11: 8}
 """Bytes of an item by ONNX's number of the type: no texts, and nothing exotic."""
 
 
-_FLOAT = 1
+_ONNX_FLOAT = 1
 _FLOATS = frozenset({1, 10, 11})
 """ONNX's numbers of the types that are no integers."""
 
 _DIVISIONS = frozenset({"Div", "Mod"})
 _RECURRENT = frozenset({"GRU", "LSTM", "RNN"})
-_GATES = 8
 
 
 def check_onnx(content: bytes, size: int) -> None:
     """Check that an ONNX file consists of plain operations, with bounded answers and all weights in it.
 
     ``content`` is the file without card and seal; it is run on one observation of ``size`` numbers, or
-    :data:`~robobt.models.checks.limits.BATCH`.
+    :data:`~robobt.models.checks.limits.LARGEST_BATCH`.
     """
     import onnx
 
@@ -82,9 +88,9 @@ def check_onnx(content: bytes, size: int) -> None:
         }
         if foreign:
             raise ModelError(f"does more than arithmetic: {', '.join(sorted(foreign))}")
-        if len(model.graph.node) > _MOST_NODES:
+        if len(model.graph.node) > _MOST_GRAPH_NODES:
             raise ModelError("holds more than a model does")
-        for batch in (BATCH, 1):
+        for batch in (LARGEST_BATCH, 1):
             _check_shapes(model, batch, size)
     except ModelError:
         raise
@@ -104,7 +110,7 @@ def _check_fields(data: bytes, message: Any, before: int) -> int:
                 raise ModelError("keeps its weights in another file")
             name = f"field {number}" if known is None else known.name
             raise ModelError(f"has {name} of ONNX's {message.name} in it, which no network needs")
-        if count > _MOST_FIELDS:
+        if count > _MOST_FILE_FIELDS:
             raise ModelError("holds more than a model does")
         if known.message_type is not None:
             count = _check_fields(content, known.message_type, count)
@@ -116,7 +122,7 @@ def _check_fields(data: bytes, message: Any, before: int) -> int:
 def _check_tensors(model: onnx.ModelProto) -> None:
     attributes = [field for node in model.graph.node for field in node.attribute]
     for tensor in [*model.graph.initializer, *[field.t for field in attributes if field.HasField("t")]]:
-        item = _ITEM_SIZES.get(tensor.data_type)
+        item = _ONNX_ITEM_SIZES.get(tensor.data_type)
         count = math.prod(tensor.dims)
         if item is None or any(size < 0 for size in tensor.dims):
             raise ModelError(f"has weights of a type that no network needs: {tensor.name[:80]}")
@@ -140,11 +146,11 @@ def _check_shapes(model: onnx.ModelProto, batch: int, size: int) -> None:
             shape = shapes.get(name)
             if name and (shape is None or min(shape, default=0) < 0):
                 raise ModelError(f"has a size in it that depends on more than its input: {name[:80]}")
-            if name and types.get(name) not in _ITEM_SIZES:
+            if name and types.get(name) not in _ONNX_ITEM_SIZES:
                 raise ModelError(f"has values of a type that no network needs: {name[:80]}")
             taken += 8 * math.prod(shape or ())
         work += _work(node, shapes, types)
-    if taken > MAX_BYTES or work > largest_work(batch):
+    if taken > MAX_OUTPUT_BYTES or work > largest_work(batch):
         raise ModelError("takes more memory or time than a model does")
     _check_divisions(model.graph, types)
 
@@ -224,12 +230,12 @@ def _work(node: onnx.NodeProto, shapes: Mapping[str, list[int]], types: Mapping[
     taken = [shapes.get(name, []) for name in node.input]
     made = sum([math.prod(shapes.get(name, [])) for name in node.output])
     if node.op_type in _RECURRENT:
-        return _GATES * made * max([length for shape in taken for length in shape], default=1)
+        return RECURRENT_GATES * made * max([length for shape in taken for length in shape], default=1)
     if node.op_type not in ("Gemm", "MatMul"):
         return ELEMENT * max(sum([math.prod(shape) for shape in taken]), made)
     # The axis that both factors have is no longer than the longest of either.
     steps = made * min([max(shape, default=1) for shape in taken[:2]], default=1)
-    return ELEMENT * made + (steps if types.get(node.input[0]) == _FLOAT else OTHER_TYPE * steps)
+    return ELEMENT * made + (steps if types.get(node.input[0]) == _ONNX_FLOAT else OTHER_TYPE * steps)
 
 
 def _check_divisions(graph: onnx.GraphProto, types: Mapping[str, int]) -> None:

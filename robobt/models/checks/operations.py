@@ -61,9 +61,9 @@ aten::chunk aten::format aten::list aten::size aten::split aten::unbind aten::un
 prim::Constant prim::GetAttr prim::If prim::ListConstruct prim::Loop prim::TupleUnpack prim::Uninitialized
 prim::unchecked_cast
 """
-_LISTS = frozenset(_MAKE_LISTS.split())
+_LIST_OPERATIONS = frozenset(_MAKE_LISTS.split())
 """Operations that may answer a list or a text; of others two doubled forty times would fill the memory."""
-_MOST_NODES = 1000
+_MOST_OPERATIONS = 1000
 
 
 def check_loaded(graph: Graph) -> None:
@@ -71,7 +71,7 @@ def check_loaded(graph: Graph) -> None:
     _check([node.kind() for node in nodes_of(graph)], _AT_LOAD)
     for node in nodes_of(graph):
         answers = {value.type().kind() for value in node.outputs()}
-        if answers & {"ListType", "StringType", "DictType"} and node.kind() not in _LISTS:
+        if answers & {"ListType", "StringType", "DictType"} and node.kind() not in _LIST_OPERATIONS:
             raise ModelError(f"does more than arithmetic: lists or texts are made by {node.kind()}")
 
 
@@ -83,8 +83,8 @@ def check_frozen(graph: Graph) -> list[Any]:
     bounds does so again.
     """
     nodes = list(graph.nodes())
-    if len(nodes) > _MOST_NODES:
-        raise ModelError(f"takes more than {_MOST_NODES} operations")
+    if len(nodes) > _MOST_OPERATIONS:
+        raise ModelError(f"takes more than {_MOST_OPERATIONS} operations")
     _check([node.kind() for node in nodes], _PLAIN | {"prim::If"} | _COMPLAINTS)
     inside = [node.kind() for outer in nodes for block in outer.blocks() for node in nodes_of(block)]
     _check(inside, _IN_BRANCH)

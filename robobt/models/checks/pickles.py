@@ -11,11 +11,11 @@ import re
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from robobt.models.checks.dialect import Sources
+from robobt.models.checks.dialect import ArchiveCode
 from robobt.models.checks.objects import (
     MOST_VALUES,
-    Name,
     Object,
+    PickledName,
     Storage,
     Tensor,
     check_objects,
@@ -27,13 +27,13 @@ _CLASS = re.compile(r"__torch__(\.\w+)* \w+")
 _STORAGE = re.compile(r"torch (\w+)Storage")
 _TAG = re.compile(r"[\w\[\], .]{1,200}")
 _DEVICE = re.compile(r"cpu|cuda:\d")
-_ITEM_SIZES = {"Bool": 1, "Byte": 1, "Char": 1, "Short": 2, "Half": 2, "BFloat16": 2}
-_ITEM_SIZES |= {"Int": 4, "Float": 4, "Long": 8, "Double": 8}
-_LISTS = {"build_intlist": int, "build_doublelist": float, "build_boollist": bool}
-_MARK = object()
+_STORAGE_ITEM_SIZES = {"Bool": 1, "Byte": 1, "Char": 1, "Short": 2, "Half": 2, "BFloat16": 2}
+_STORAGE_ITEM_SIZES |= {"Int": 4, "Float": 4, "Long": 8, "Double": 8}
+_LIST_BUILDERS = {"build_intlist": int, "build_doublelist": float, "build_boollist": bool}
+_STACK_MARK = object()
 
 
-def check_pickles(members: Mapping[str, bytes], sources: Sources) -> None:
+def check_pickles(members: Mapping[str, bytes], sources: ArchiveCode) -> None:
     """Check ``data.pkl`` and ``constants.pkl`` of an archive, and the weights that they name."""
     size = 0
     for name in ("constants.pkl", "data.pkl"):
@@ -77,13 +77,13 @@ class _Machine:
         for number, (operation, argument, at) in enumerate(pickletools.genops(content)):
             if number >= MOST_VALUES:
                 raise ModelError("holds more than a model does")
-            step = _STEPS.get(operation.name)
+            step = _OPCODE_STEPS.get(operation.name)
             if step is None:
                 raise ModelError(f"holds a pickle with {operation.name}, which torch does not write")
             step(self, argument)
             ended = -1 if at is None else at
         (value,) = self._stack
-        if ended != len(content) - 1 or value is _MARK:
+        if ended != len(content) - 1 or value is _STACK_MARK:
             raise ModelError(f"{self._folder}.pkl in it is damaged (more than one value)")
         check_plain(value)
         return value
@@ -95,7 +95,7 @@ class _Machine:
     def pop(self, count: int) -> list[object]:
         """Take values off the stack."""
         taken = self._stack[-count:]
-        if len(taken) < count or any(value is _MARK for value in taken):
+        if len(taken) < count or any(value is _STACK_MARK for value in taken):
             raise ValueError("too few values")
         del self._stack[-count:]
         return taken
@@ -103,13 +103,13 @@ class _Machine:
     def pop_marked(self) -> list[object]:
         """Take what lies above the last mark off the stack, and the mark."""
         taken: list[object] = []
-        while (value := self._stack.pop()) is not _MARK:
+        while (value := self._stack.pop()) is not _STACK_MARK:
             taken.append(value)
         return taken[::-1]
 
     def put(self, index: int) -> None:
         """Remember the topmost value; torch counts up, and makes room for any number."""
-        if index != len(self._memo) or self._stack[-1] is _MARK:
+        if index != len(self._memo) or self._stack[-1] is _STACK_MARK:
             raise ModelError(f"{self._folder}.pkl in it is damaged (a memory of {index})")
         self._memo.append(self._stack[-1])
 
@@ -136,12 +136,12 @@ class _Machine:
         known = text in _CALLS or _STORAGE.fullmatch(text) or _CLASS.fullmatch(text)
         if not known:
             raise ModelError(f"names {text[:80]} in it, which no network needs")
-        self.push(Name(text))
+        self.push(PickledName(text))
 
     def make(self) -> None:
         """Make an object of a class of the archive."""
         kind, arguments = self.pop(2)
-        if not isinstance(kind, Name) or not _CLASS.fullmatch(kind.text) or arguments != ():
+        if not isinstance(kind, PickledName) or not _CLASS.fullmatch(kind.text) or arguments != ():
             raise ValueError("no class")
         self.push(Object(kind.text.replace(" ", ".")))
 
@@ -156,7 +156,7 @@ class _Machine:
     def call(self) -> None:
         """Call one of torch's functions."""
         function, arguments = self.pop(2)
-        if not isinstance(function, Name) or not isinstance(arguments, tuple):
+        if not isinstance(function, PickledName) or not isinstance(arguments, tuple):
             raise ValueError("no call")
         self.push(_CALLS[function.text](self, *arguments))
 
@@ -164,8 +164,10 @@ class _Machine:
         """Look up a tensor's memory."""
         (given,) = self.pop(1)
         match given:
-            case ("storage", Name(text), str(key), str(device), int(count)) if _DEVICE.fullmatch(device):
-                item = _ITEM_SIZES[_STORAGE.fullmatch(text)[1]]  # type: ignore[index]
+            case ("storage", PickledName(text), str(key), str(device), int(count)) if _DEVICE.fullmatch(
+                device
+            ):
+                item = _STORAGE_ITEM_SIZES[_STORAGE.fullmatch(text)[1]]  # type: ignore[index]
             case _:
                 raise ValueError("no storage")
         if len(self._members.get(f"{self._folder}/{key}", b"")) != item * count:
@@ -223,13 +225,13 @@ _CALLS: Mapping[str, Callable[..., object]] = {
     "collections OrderedDict": lambda _: {},
     "torch.jit._pickle build_tensorlist": _list_of(Tensor),
     "torch.jit._pickle restore_type_tag": _tagged,
-    **{f"torch.jit._pickle {name}": _list_of(kind) for name, kind in _LISTS.items()},
+    **{f"torch.jit._pickle {name}": _list_of(kind) for name, kind in _LIST_BUILDERS.items()},
 }
 
-_STEPS: Mapping[str, Callable[[_Machine, Any], None]] = {
+_OPCODE_STEPS: Mapping[str, Callable[[_Machine, Any], None]] = {
     "PROTO": lambda _machine, _version: None,
     "STOP": lambda _machine, _nothing: None,
-    "MARK": lambda machine, _: machine.push(_MARK),
+    "MARK": lambda machine, _: machine.push(_STACK_MARK),
     "NONE": lambda machine, _: machine.push(None),
     "NEWTRUE": lambda machine, _: machine.push(True),
     "NEWFALSE": lambda machine, _: machine.push(False),

@@ -11,14 +11,14 @@ import ast
 import re
 from collections.abc import Mapping
 
-from robobt.models.checks.dialect import Class, Sources, check_type, is_literal, is_text, plain, refusal
+from robobt.models.checks.dialect import ArchiveCode, Class, check_type, is_literal, is_text, plain, refusal
 from robobt.models.checks.functions import check_functions
+from robobt.models.checks.limits import DEEPEST_NESTING
 from robobt.models.checks.pickles import check_pickles
 from robobt.models.file import ModelError
 
 _LONGEST_SOURCE = 2**20
 _LONGEST_LINE = 20_000
-_DEEPEST = 40
 _TEXT = re.compile(r"[ -~\n]*")
 
 
@@ -35,9 +35,9 @@ def checked_members(members: Mapping[str, bytes]) -> dict[str, bytes]:
     return {**members, **sources.texts}
 
 
-def _read_sources(members: Mapping[str, bytes]) -> Sources:
+def _read_sources(members: Mapping[str, bytes]) -> ArchiveCode:
     """Read an archive's code (its members ``code/….py``) and check that it is a network's."""
-    sources = Sources()
+    sources = ArchiveCode()
     for name, content in members.items():
         tree = _parsed(name, content)
         prefix = name.removeprefix("code/").removesuffix(".py").replace("/", ".")
@@ -64,14 +64,14 @@ def _parsed(name: str, content: bytes) -> ast.Module:
     except (ValueError, SyntaxError, RecursionError, MemoryError) as error:
         raise ModelError(f"{name} in it is damaged ({type(error).__name__})") from error
     level: list[ast.AST] = [tree]
-    for _ in range(_DEEPEST):
+    for _ in range(DEEPEST_NESTING):
         level = [child for node in level for child in ast.iter_child_nodes(node)]
     if level:
-        raise ModelError(f"{name} in it is nested more than {_DEEPEST} deep")
+        raise ModelError(f"{name} in it is nested more than {DEEPEST_NESTING} deep")
     return tree
 
 
-def _declare(sources: Sources, prefix: str, statement: ast.stmt) -> None:
+def _declare(sources: ArchiveCode, prefix: str, statement: ast.stmt) -> None:
     if not isinstance(statement, ast.ClassDef | ast.FunctionDef):
         raise refusal(statement)
     qualified = f"{prefix}.{plain(statement.name)}"

@@ -10,7 +10,7 @@ from torch import Tensor
 
 from robobt.models.checks.arguments import check_arguments
 from robobt.models.checks.bounds import Bounds
-from robobt.models.checks.limits import BATCH
+from robobt.models.checks.limits import LARGEST_BATCH
 from robobt.models.checks.operations import check_frozen, check_loaded
 
 
@@ -25,7 +25,7 @@ def load_frozen(archive: bytes) -> tuple[Any, list[Tensor]]:
     check_loaded(loaded.inlined_graph)
     check_arguments(loaded._c)
     # Freezing runs whatever does not depend on the input.
-    with Bounds(BATCH):
+    with Bounds(LARGEST_BATCH):
         module = torch.jit.freeze(loaded)
     return module, check_frozen(module.inlined_graph)
 
@@ -33,6 +33,6 @@ def load_frozen(archive: bytes) -> tuple[Any, list[Tensor]]:
 def run_bounded(module: Any, constants: list[Tensor], size: int) -> None:
     """Run a frozen module within bounds, for each number of observations that it will be given."""
     with torch.inference_mode():
-        for count in (BATCH, 1):
+        for count in (LARGEST_BATCH, 1):
             with Bounds(count, constants):
                 module(torch.zeros(count, size))

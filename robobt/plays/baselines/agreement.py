@@ -21,20 +21,20 @@ SWITCH_GAIN = 0.15
 _PACE = 2.0
 """Mean speed of a robot on its way to the ball, including start and stop [m/s]."""
 
-_ROLLS = 0.3
-_AHEAD = (0.0, 0.2, 0.4, 0.7, 1.0, 1.5, 2.0)
+_ROLLING_BALL_SPEED = 0.3
+_LOOK_AHEAD_TIMES = (0.0, 0.2, 0.4, 0.7, 1.0, 1.5, 2.0)
 """Times at which a rolling ball's position is predicted [s]."""
 
-_DETOUR = 0.3
+_LONGEST_DETOUR = 0.3
 """Longest additional time for a robot to get behind the ball first [s]."""
 
-_HELD = 0.5
+_HOLDER_BONUS = 0.5
 """Bonus for the robot that has the ball [s]."""
 
 _MARK_GAIN = 0.3
 """Another robot takes over marking an opponent if it is this much closer [m]."""
 
-_REACH = 0.06
+_AREA_REACH = 0.06
 """Only a goalkeeper goes for a ball in a defence area or this close to one [m]."""
 
 MARK_FROM = 0.5
@@ -106,8 +106,8 @@ def _choose_attacker(frame: Frame, team: TeamStore, farthest: dict[int, float]) 
         return team.attacker
     placing = frame.game.restart is Restart.BALL_PLACEMENT
     if not placing and (
-        in_own_defense_area(field, ball.x, ball.y, _REACH)
-        or in_their_defense_area(field, ball.x, ball.y, _REACH)
+        in_own_defense_area(field, ball.x, ball.y, _AREA_REACH)
+        or in_their_defense_area(field, ball.x, ball.y, _AREA_REACH)
     ):
         return None
     best: int | None = None
@@ -132,15 +132,15 @@ def _time_to_ball(frame: Frame, robot: RobotState) -> float:
     if not game.in_play and game.placement is not None and game.restart is not Restart.BALL_PLACEMENT:
         x, y = game.placement
     elif has_ball(robot, ball):
-        return -_HELD
-    elif abs(ball.vx) + abs(ball.vy) > _ROLLS:
+        return -_HOLDER_BONUS
+    elif abs(ball.vx) + abs(ball.vy) > _ROLLING_BALL_SPEED:
         return min(
             [
                 max(ahead, hypot(x + ahead * ball.vx - robot.x, y + ahead * ball.vy - robot.y) / _PACE)
-                for ahead in _AHEAD
+                for ahead in _LOOK_AHEAD_TIMES
             ]
         )
-    return hypot(robot.x - x, robot.y - y) / _PACE + min(_DETOUR, max(0.0, robot.x - x))
+    return hypot(robot.x - x, robot.y - y) / _PACE + min(_LONGEST_DETOUR, max(0.0, robot.x - x))
 
 
 def _choose_marks(frame: Frame, team: TeamStore, markers: set[int]) -> dict[int, int]:

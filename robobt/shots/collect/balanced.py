@@ -19,7 +19,7 @@ from robobt.match.scenario.placing import HELD_DISTANCE
 from robobt.match.scenario.robots import Robots, RobotSetup
 from robobt.match.scenario.scenario import Scenario, load_scenario
 from robobt.match.scenario.starts import RobotStart
-from robobt.shots.collect.plan import CLOSE_RANGE, SHOT_SPEED, Attempt, CollectionSettings
+from robobt.shots.collect.plan import CLOSE_RANGE, ROBOBULLS_SHOT_SPEED, Attempt, CollectionSettings
 from robobt.skills.aim.raters.goal_line import POST_GAP
 from robobt.world.field import FieldGeometry
 from robobt.world.geometry import FloatArray, Point, direction, distance
@@ -35,15 +35,15 @@ WIDEST = 1.3
 OFFSET = 0.7
 """Largest distance at the start of a goalkeeper from the line of a shot taken at once [m]."""
 
-_EDGE = 0.15
-_GAP = 0.35
-_TURN = 0.8
-_AT_ONCE = 0.6
+_AREA_EDGE_GAP = 0.15
+_LEAST_ROBOT_GAP = 0.35
+_LARGEST_TURN = 0.8
+_FACING_SHARE = 0.6
 """Share of the standing attackers that need not turn first."""
 _OUT = (ROBOT_RADIUS, 0.7)
 _TRAVEL = (0.3, 0.7)
-_SPEEDS = (1.0, 2.0)
-_TOLERANCES = (0.005, 0.03)
+_DRIBBLE_SPEEDS = (1.0, 2.0)
+_BALANCED_TOLERANCES = (0.005, 0.03)
 
 
 def balanced_attempt(settings: CollectionSettings, trial: int) -> Attempt:
@@ -61,7 +61,7 @@ def balanced_attempt(settings: CollectionSettings, trial: int) -> Attempt:
     ball = _ball(field, variant, even.range, even.bearing)
     usable = field.goal_width / 2.0 - POST_GAP
     target = (field.half_length, (2.0 * even.target - 1.0) * usable)
-    start, turn, at_once = ball, _TURN * (2.0 * even.turn - 1.0), rng.random() < _AT_ONCE
+    start, turn, at_once = ball, _LARGEST_TURN * (2.0 * even.turn - 1.0), rng.random() < _FACING_SHARE
     if kind == "motion":
         start = _before(field, ball, rng)
         heading = direction(start, ball) + 0.3 * turn
@@ -77,9 +77,9 @@ def balanced_attempt(settings: CollectionSettings, trial: int) -> Attempt:
         "target_y": target_y,
         "place_x": place_x,
         "place_y": place_y,
-        "dribble_speed": float(rng.uniform(*_SPEEDS)),
-        "tolerance": float(rng.uniform(*_TOLERANCES)),
-        "shot_speed": SHOT_SPEED,
+        "dribble_speed": float(rng.uniform(*_DRIBBLE_SPEEDS)),
+        "tolerance": float(rng.uniform(*_BALANCED_TOLERANCES)),
+        "shot_speed": ROBOBULLS_SHOT_SPEED,
     }
     (blue, *_), (goalkeeper, *others) = base.robots.blue, base.robots.yellow
     taken = [shooter, start, keeper]
@@ -173,8 +173,8 @@ def _ball(field: FieldGeometry, variant: str, range_: float, angle: float) -> Po
     bearing = WIDEST * (2.0 * angle - 1.0)
     away, aside = cos(bearing), abs(sin(bearing))
     most = min(FARTHEST, (field.half_width - 0.2) / aside if aside > 0.0 else FARTHEST)
-    depth = field.defense_depth + _EDGE
-    side = field.defense_width / 2.0 + _EDGE
+    depth = field.defense_depth + _AREA_EDGE_GAP
+    side = field.defense_width / 2.0 + _AREA_EDGE_GAP
     least = min(depth / away if away > 0.0 else depth, side / aside if aside > 0.0 else FARTHEST)
     least = min(least, most)
     if variant == "mid_range":
@@ -197,10 +197,10 @@ def keeper_start(field: FieldGeometry, ball: Point, target: Point, offset: float
     x = min(field.half_length - 0.02, max(field.half_length - field.defense_depth, x))
     y = min(reach, max(-reach, y))
     gap = hypot(x - ball_x, y - ball_y)
-    if gap < _GAP:
+    if gap < _LEAST_ROBOT_GAP:
         # Straight towards the goal, out of the ball's way.
         home = direction((x, y), field.their_goal)
-        x, y = x + (_GAP - gap) * cos(home), y + (_GAP - gap) * sin(home)
+        x, y = x + (_LEAST_ROBOT_GAP - gap) * cos(home), y + (_LEAST_ROBOT_GAP - gap) * sin(home)
     return (x, y)
 
 

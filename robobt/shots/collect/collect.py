@@ -25,7 +25,7 @@ MAX_COUNT = 10_000_000
 _BARREN = 2000
 """Number of trials in a row without a shot after which the collection gives up."""
 
-_AHEAD = 4
+_TRIALS_PER_WORKER = 4
 """Trials a worker holds at a time: they take milliseconds."""
 
 
@@ -108,7 +108,7 @@ def collect_shots(
             rows = file.rows
         else:
             work = Work(partial(_play, settings), "trial", CollectionError)
-            results = run_tasks(work, tally.open_trials(), workers, ahead=_AHEAD)
+            results = run_tasks(work, tally.open_trials(), workers, ahead=_TRIALS_PER_WORKER)
             try:
                 for taken in results:
                     done.simulated += taken.time

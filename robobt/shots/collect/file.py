@@ -19,9 +19,9 @@ from robobt.config.atomic import write_atomically
 from robobt.shots.collect.plan import CollectionSettings
 from robobt.shots.data.files import csv_text, read_shots, write_shots
 from robobt.shots.data.problems import ShotDataError
-from robobt.shots.data.schema import COLUMNS, SCHEMA, VERSION, Row
+from robobt.shots.data.schema import SCHEMA, SHOT_COLUMNS, SHOTS_VERSION, Row
 
-FORMAT = "robobt-shots"
+SHOTS_FORMAT = "robobt-shots"
 
 
 class CollectionFile:
@@ -91,9 +91,9 @@ class CollectionFile:
             found = json.loads(self.description.read_text(encoding="utf-8"))
         except ValueError as error:
             raise ShotDataError(f"{self.description}: {error}") from error
-        if not isinstance(found, dict) or found.get("format") != FORMAT:
+        if not isinstance(found, dict) or found.get("format") != SHOTS_FORMAT:
             raise ShotDataError(f"{self.description}: not the description of a collection of shots")
-        wanted: dict[str, object] = {"robobt": __version__, "schema_version": VERSION}
+        wanted: dict[str, object] = {"robobt": __version__, "schema_version": SHOTS_VERSION}
         for key, value in {**wanted, **self._settings.model_dump()}.items():
             there = found.get(key, found.get("settings", {}).get(key))
             if there != value:
@@ -133,12 +133,12 @@ class CollectionFile:
     def _describe(self) -> None:
         text = json.dumps(
             {
-                "format": FORMAT,
+                "format": SHOTS_FORMAT,
                 "robobt": __version__,
-                "schema_version": VERSION,
+                "schema_version": SHOTS_VERSION,
                 "complete": self.complete,
                 "settings": self._settings.model_dump(),
-                "columns": [column._asdict() for column in COLUMNS],
+                "columns": [column._asdict() for column in SHOT_COLUMNS],
             },
             indent=1,
         )

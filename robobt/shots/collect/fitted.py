@@ -29,23 +29,23 @@ LIKE_RECORDED = 0.75
 _ROBOT_SPEED = 5.0
 """Top speed of the robot itself, which leaves it to the goalkeeper how fast it drives [m/s]."""
 
-_ASIDE = (0.4, 0.1)
+_ASIDE_DISTRIBUTION = (0.4, 0.1)
 """Mean and standard deviation of the recorded goalkeepers' distance from the line of the shot [m]."""
 _FARTHEST_ASIDE = 0.8
 _TOWARDS = (0.55, 0.28)
 """Mean and standard deviation of their speed towards that line [m/s]."""
-_DRIFT = 0.03
+_DRIFT_SPREAD = 0.03
 """Standard deviation of their speed along it [m/s]."""
 _BEARING = 0.25
 """Standard deviation of the recorded balls' bearing off the straight way out of the goal [rad]."""
 _INWARD = 0.95
 """Share of them that are on the side of the line where most of the goal is."""
-_CREEP = (0.0, 0.3)
+_SHOOTER_SPEEDS = (0.0, 0.3)
 """How fast the shooter drives at the kick [m/s]: RoboBulls' robots creep forward."""
-_TOLERANCES = (0.005, 0.0175)
+_KICK_TOLERANCES = (0.005, 0.0175)
 """Angle by which a kick may be off [rad]; RoboBulls' is 1 degree."""
-_AT_ONCE = 0.05
-_EDGE = 0.15
+_IMMEDIATE_KICK_TOLERANCE = 0.05
+_BALL_AREA_GAP = 0.15
 """Gap between the ball and the defence area [m]."""
 
 
@@ -70,7 +70,7 @@ def against_fitted(attempt: Attempt, population: Population) -> Attempt:
     velocities: dict[RobotId, Point] = {}
     variant = attempt.labels["variant"]
     if shooter.play == "take_shot":
-        params["tolerance"] = float(rng.uniform(*_TOLERANCES))
+        params["tolerance"] = float(rng.uniform(*_KICK_TOLERANCES))
         params["max_turn"] = ROBOBULLS_LIMITS.max_turn * exp(rng.uniform(0.0, log(3.0)))
         if rng.random() < AT_KICK:
             ball = (float(str(params["place_x"])), float(str(params["place_y"])))
@@ -81,7 +81,7 @@ def against_fitted(attempt: Attempt, population: Population) -> Attempt:
             scene = _at_kick(scenario.field, ball, traits, rng)
             (_, target_y), (place_x, place_y) = scene.target, ball
             params |= {"target_y": target_y, "place_x": place_x, "place_y": place_y}
-            params["tolerance"] = _AT_ONCE
+            params["tolerance"] = _IMMEDIATE_KICK_TOLERANCE
             shooter = moved(shooter, scene.shooter, scene.heading)
             keeper = moved(keeper, scene.keeper, direction(scene.keeper, ball), flip=True)
             velocities = {
@@ -115,9 +115,9 @@ class _Scene(NamedTuple):
 def _swung(field: FieldGeometry, ball: Point, bearing: float) -> Point:
     """Return a ball as far from the goal as ``ball``, or outside the defence area, at another bearing."""
     reach = distance(ball, field.their_goal)
-    x, side = field.half_length - reach * cos(bearing), field.half_width - _EDGE
+    x, side = field.half_length - reach * cos(bearing), field.half_width - _BALL_AREA_GAP
     y = min(side, max(-side, reach * sin(bearing)))
-    return (min(x, field.half_length - field.defense_depth - _EDGE), y)
+    return (min(x, field.half_length - field.defense_depth - _BALL_AREA_GAP), y)
 
 
 def _at_kick(field: FieldGeometry, ball: Point, traits: Traits, rng: np.random.Generator) -> _Scene:
@@ -127,7 +127,7 @@ def _at_kick(field: FieldGeometry, ball: Point, traits: Traits, rng: np.random.G
     target_y = float(rng.choice((-1.0, 1.0))) * reach * sqrt(rng.random())
     target = (field.half_length, target_y)
     aim = direction(ball, target)
-    aside = rng.normal(*_ASIDE) if rng.random() < 0.5 else rng.uniform(0.0, _FARTHEST_ASIDE)
+    aside = rng.normal(*_ASIDE_DISTRIBUTION) if rng.random() < 0.5 else rng.uniform(0.0, _FARTHEST_ASIDE)
     inward = -np.sign(target_y) if rng.random() < _INWARD else np.sign(target_y)
     # Most stand well back, a few far out.
     keeper = keeper_start(field, ball, target, float(inward * abs(aside)), float(rng.random()) ** 2)
@@ -136,9 +136,9 @@ def _at_kick(field: FieldGeometry, ball: Point, traits: Traits, rng: np.random.G
     # No goalkeeper is much faster towards the line than it can stop there.
     most = sqrt(2.0 * traits.braking * abs(across)) + 0.1
     towards = -float(np.sign(across)) * min(float(rng.normal(*_TOWARDS)), most)
-    along = float(rng.normal(0.0, _DRIFT))
+    along = float(rng.normal(0.0, _DRIFT_SPREAD))
     heading = aim + float(np.sign(across)) * traits.kick_error
-    creep = float(rng.uniform(*_CREEP))
+    creep = float(rng.uniform(*_SHOOTER_SPEEDS))
     return _Scene(
         target,
         held_by(ball, heading),

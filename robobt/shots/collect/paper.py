@@ -16,7 +16,14 @@ import numpy as np
 from robobt.match.runner import trial_seed
 from robobt.match.scenario.scenario import Scenario, load_scenario
 from robobt.match.scenario.starts import Box
-from robobt.shots.collect.plan import CLOSE_RANGE, MID_RANGE, SHOT_SPEED, Attempt, CollectionSettings, Section
+from robobt.shots.collect.plan import (
+    CLOSE_RANGE,
+    MID_RANGE,
+    ROBOBULLS_SHOT_SPEED,
+    Attempt,
+    CollectionSettings,
+    Section,
+)
 
 TRAIN, TEST = 542, 201
 """Shots to train and to test with."""
@@ -35,7 +42,7 @@ SECTIONS: dict[str, Section] = {
 """Where the attacker that stays is put: x and y from, to [m]."""
 
 
-class Part(NamedTuple):
+class PaperShots(NamedTuple):
     """A number of shots of one scenario with one tolerance [m]."""
 
     scenario: str
@@ -47,17 +54,17 @@ TWICE, THRICE, FOUR_TIMES, PLUS = 0.243, 0.3645, 0.486, 0.1965
 """The paper's tolerances [m]: multiples of ball and robot radius, and that sum plus 75 mm."""
 
 PARTS = (
-    Part("motion", TWICE, 43),
-    Part("motion", THRICE, 73),
-    Part("motion", FOUR_TIMES, 53),
-    Part("still", PLUS, 20),
-    Part("still", TWICE, 20),
-    Part("still", THRICE, 313),
-    Part("still", FOUR_TIMES, 20),
-    Part("motion", TWICE, 33),
-    Part("motion", THRICE, 33),
-    Part("motion", FOUR_TIMES, 35),
-    Part("still", TWICE, 100),
+    PaperShots("motion", TWICE, 43),
+    PaperShots("motion", THRICE, 73),
+    PaperShots("motion", FOUR_TIMES, 53),
+    PaperShots("still", PLUS, 20),
+    PaperShots("still", TWICE, 20),
+    PaperShots("still", THRICE, 313),
+    PaperShots("still", FOUR_TIMES, 20),
+    PaperShots("motion", TWICE, 33),
+    PaperShots("motion", THRICE, 33),
+    PaperShots("motion", FOUR_TIMES, 35),
+    PaperShots("still", TWICE, 100),
 )
 """First those of the 542, then those of the 201."""
 
@@ -70,7 +77,7 @@ def paper_attempt(settings: CollectionSettings, trial: int) -> Attempt:
     section: Section | None = None
     params: dict[str, object] = {
         "rater": {"name": "segment_clearance", "tolerance": tolerance},
-        "shot_speed": SHOT_SPEED,
+        "shot_speed": ROBOBULLS_SHOT_SPEED,
     }
     base = _base(kind)
     blue = base.robots.blue[0]

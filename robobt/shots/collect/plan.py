@@ -20,7 +20,7 @@ MID_RANGE, CLOSE_RANGE = 3.5, 2.5
 Half of the paper's shots on the move were taken from within 3.35 m.
 """
 
-SHOT_SPEED = 7.5
+ROBOBULLS_SHOT_SPEED = 7.5
 """RoboBulls' kick speed of a shot [m/s]."""
 
 

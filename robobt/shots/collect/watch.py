@@ -18,7 +18,7 @@ from robobt.world.protocol import World, WrappedWorld
 from robobt.world.state import Frame, RobotId, RobotState
 from robobt.worlds import sim_world
 
-_LEFT_SHARE = 0.5
+_LEAVING_SPEED_SHARE = 0.5
 """A ball that leaves with this share of the kick's speed has been kicked."""
 
 _OUTCOMES = {Outcome.GOAL_BLUE: "goal", Outcome.SAVED: "saved", Outcome.OUT: "wide", Outcome.REST: "stopped"}
@@ -51,7 +51,7 @@ class WatchedWorld(WrappedWorld):
             return
         after = self.world.truth()
         away = _speed_away(me, after) - _speed_away(me, before)
-        if away > _LEFT_SHARE * order.kick_speed or _stopped_at_once(before, after, self._shooter):
+        if away > _LEAVING_SPEED_SHARE * order.kick_speed or _stopped_at_once(before, after, self._shooter):
             self.shot = _scene(before, after, me, aimed, self._shooter)
 
 

@@ -16,16 +16,16 @@ from numpy.typing import NDArray
 
 from robobt.shots.data.cells import Cells
 from robobt.shots.data.problems import ShotDataError
-from robobt.shots.data.schema import COLUMNS, SCHEMA, UNKNOWN, VERSION, turned
+from robobt.shots.data.schema import SCHEMA, SHOT_COLUMNS, SHOTS_VERSION, UNKNOWN, turned
 from robobt.world.geometry import FloatArray
 
-BALL_RADIUS = 0.0215
+AUTHORS_BALL_RADIUS = 0.0215
 """Ball radius in the author's settings [m]."""
 
-ROBOT_RADIUS = 0.100
+AUTHORS_ROBOT_RADIUS = 0.100
 """Robot radius in the author's settings [m]; his tolerances are multiples of both together."""
 
-_MM = 1e-3
+_MILLIMETRE = 1e-3
 _LENGTHS = (
     *("robot_x", "robot_y", "ball_x", "ball_y", "target_x", "target_y", "opp_x_global", "opp_y_global"),
     *("robot_vx", "robot_vy", "opp_vx", "opp_vy", "v_towards_ball"),
@@ -84,14 +84,15 @@ def author_table(cells: Cells) -> pa.Table:
         "opponents_vy": _singles(velocity[1], placed & turnable),
     }
     known = {
-        "schema_version": [VERSION] * count,
+        "schema_version": [SHOTS_VERSION] * count,
         "success": cells.convert(titles["success"], _label, 0),
         **{name: cells.columns[titles[name]] for name in _TEXTS if name in titles},
         **real,
         **lists,
     }
     return pa.Table.from_pydict(
-        {column.name: known.get(column.name, [UNKNOWN[column.type]] * count) for column in COLUMNS}, SCHEMA
+        {column.name: known.get(column.name, [UNKNOWN[column.type]] * count) for column in SHOT_COLUMNS},
+        SCHEMA,
     )
 
 
@@ -108,7 +109,7 @@ def _angle(cell: str) -> float:
 
 
 def _length(cell: str) -> float:
-    return _angle(cell) * _MM
+    return _angle(cell) * _MILLIMETRE
 
 
 def _required_length(cell: str) -> float:
@@ -144,9 +145,9 @@ def _label(cell: str) -> int:
 
 
 def _tolerance(cell: str) -> float:
-    unit = BALL_RADIUS + ROBOT_RADIUS
+    unit = AUTHORS_BALL_RADIUS + AUTHORS_ROBOT_RADIUS
     if match := re.fullmatch(r"(\d+(?:\.\d+)?)x", cell):
         return float(match[1]) * unit
     if match := re.fullmatch(r"\+(\d+(?:\.\d+)?)mm", cell):
-        return unit + float(match[1]) * _MM
+        return unit + float(match[1]) * _MILLIMETRE
     return _length(cell)

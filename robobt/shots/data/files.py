@@ -18,7 +18,7 @@ from robobt.config.atomic import replacing
 from robobt.shots.data.author_data import author_table
 from robobt.shots.data.cells import Cells, Problems, read_cells, refuse
 from robobt.shots.data.problems import ShotDataError
-from robobt.shots.data.schema import COLUMNS, SCHEMA, UNKNOWN, VERSION, Row
+from robobt.shots.data.schema import SCHEMA, SHOT_COLUMNS, SHOTS_VERSION, UNKNOWN, Row
 
 _SEPARATOR = ";"
 """Between the numbers of a list in a cell of a CSV file."""
@@ -138,7 +138,7 @@ def _own_table(cells: Cells) -> pa.Table:
             raise ShotDataError(f"{cells.file}: has no column {name!r}")
     values = {
         column.name: cells.convert(column.name, _PARSERS[column.type], UNKNOWN[column.type])
-        for column in COLUMNS
+        for column in SHOT_COLUMNS
     }
     return pa.Table.from_pydict(values, SCHEMA)
 
@@ -169,7 +169,7 @@ _PARSERS: dict[str, Callable[[str], object]] = {"text": str, "int": _integer, "r
 
 def _checked(table: pa.Table, file: Path, rows: list[int], problems: Problems | None) -> pa.Table:
     """Return a table in :data:`SCHEMA`, its columns in order, after a look at what must not be missing."""
-    for column in COLUMNS:
+    for column in SHOT_COLUMNS:
         if column.name not in table.schema.names:
             raise ShotDataError(f"{file}: has no column {column.name!r}")
         try:
@@ -179,7 +179,11 @@ def _checked(table: pa.Table, file: Path, rows: list[int], problems: Problems | 
     table = table.select(SCHEMA.names).cast(SCHEMA)
     success, distance = table.column("success"), table.column("distance_to_goal")
     for name, right, problem in (
-        ("schema_version", pc.equal(table.column("schema_version"), VERSION), f"is not version {VERSION}"),
+        (
+            "schema_version",
+            pc.equal(table.column("schema_version"), SHOTS_VERSION),
+            f"is not version {SHOTS_VERSION}",
+        ),
         ("success", pc.is_in(success, pa.array([0, 1])), "is neither 1 nor 0"),
         ("distance_to_goal", pc.and_(pc.greater(distance, 0.0), pc.is_finite(distance)), "is not a distance"),
     ):

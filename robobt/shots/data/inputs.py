@@ -9,13 +9,13 @@ from numpy.typing import NDArray
 from robobt.world.features import ABSENT, SCENE_HEAD, SCENE_OPPONENTS, SHOT_SCENE, shot_scene
 from robobt.world.geometry import FloatArray
 
-PLACES = ("robot_x", "target_x")
+PLACE_COLUMNS = ("robot_x", "target_x")
 """Columns that say whether a shot's field coordinates were recorded."""
 
 _KINEMATICS = ("x", "y", "heading", "field_vx", "field_vy", "omega")
-_HELD = 0.11
+_UNRECORDED_BALL_AHEAD = 0.11
 """Shooter's centre to a ball in its mouth [m]."""
-_OPPONENT = ("x", "y", "heading", "vx", "vy", "omega")
+_OPPONENT_COLUMNS = ("x", "y", "heading", "vx", "vy", "omega")
 
 
 def shot_inputs(table: pa.Table) -> FloatArray:
@@ -26,7 +26,7 @@ def shot_inputs(table: pa.Table) -> FloatArray:
     that a predictor that needs them refuses the data.
     """
     scenes = _from_shot_frame(table)
-    placed = np.logical_and(*[np.isfinite(table.column(name).to_numpy()) for name in PLACES])
+    placed = np.logical_and(*[np.isfinite(table.column(name).to_numpy()) for name in PLACE_COLUMNS])
     counts = np.array([len(entry) for entry in table.column("opponents_x").to_pylist()])
     moving = np.array([len(entry) for entry in table.column("opponents_vx").to_pylist()]) == counts
     # Rows with equally many opponents are worked out together.
@@ -48,7 +48,7 @@ def asked_inputs(table: pa.Table) -> FloatArray:
     for name, otherwise in (
         ("target_offset", 0.0),
         ("turn", 0.0),
-        ("ball_along", _HELD),
+        ("ball_along", _UNRECORDED_BALL_AHEAD),
         ("ball_across", 0.0),
         ("ball_v_along", along),
         ("ball_v_across", across),
@@ -68,7 +68,7 @@ def _from_field(table: pa.Table, count: int) -> FloatArray:
     ball = np.stack([_column(table, f"ball_{name}") for name in ("x", "y", "vx", "vy")], axis=-1)
     target = np.stack([_column(table, "target_x"), _column(table, "target_y")], axis=-1)
     opponents = np.full((len(table), count, 6), np.nan)
-    for i, name in enumerate(_OPPONENT):
+    for i, name in enumerate(_OPPONENT_COLUMNS):
         lists = table.column(f"opponents_{name}").to_pylist()
         if count and all(len(entry) == count for entry in lists):
             opponents[:, :, i] = lists

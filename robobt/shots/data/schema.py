@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike
 
 from robobt.world.geometry import FloatArray
 
-VERSION = 1
+SHOTS_VERSION = 1
 """Of this table; in every row, so that a file says which one it holds."""
 
 
@@ -34,7 +34,7 @@ class Column(NamedTuple):
     meaning: str
 
 
-COLUMNS = (
+SHOT_COLUMNS = (
     Column("schema_version", "int", "1", "version of this table"),
     # Where the row comes from.
     Column("scenario", "text", "", "collection scenario: motion, still, or the name of another"),
@@ -98,17 +98,20 @@ COLUMNS = (
 )
 """Every column, in the order of the files."""
 
-_TYPES = {"text": pa.string(), "int": pa.int64(), "real": pa.float64(), "reals": pa.list_(pa.float64())}
+_ARROW_TYPES = {"text": pa.string(), "int": pa.int64(), "real": pa.float64(), "reals": pa.list_(pa.float64())}
 
 SCHEMA = pa.schema(
-    [pa.field(c.name, _TYPES[c.type], metadata={"unit": c.unit, "description": c.meaning}) for c in COLUMNS],
-    metadata={"robobt_shots": str(VERSION)},
+    [
+        pa.field(c.name, _ARROW_TYPES[c.type], metadata={"unit": c.unit, "description": c.meaning})
+        for c in SHOT_COLUMNS
+    ],
+    metadata={"robobt_shots": str(SHOTS_VERSION)},
 )
 """The same for pyarrow; a column's unit and description are its metadata, kept in Parquet."""
 
 RECORDED = frozenset(
     column.name
-    for column in COLUMNS
+    for column in SHOT_COLUMNS
     if column.name
     not in {
         *("schema_version", "ball_forward", "ball_left", "opp_x_global", "opp_y_global"),
@@ -119,7 +122,7 @@ RECORDED = frozenset(
 """What a collector records; :func:`complete_row` works out the rest."""
 
 Row = dict[str, Any]
-"""A shot: values by column, of the types that :data:`COLUMNS` says."""
+"""A shot: values by column, of the types that :data:`SHOT_COLUMNS` says."""
 
 AS_RECORDED = "recorded"
 """The ``variant`` of simulated shots whose scenes are distributed as those of the paper's real shots."""
@@ -145,9 +148,9 @@ def complete_row(recorded: Row) -> Row:
     needed = ("robot_x", "robot_y", "target_x", "target_y", "success")
     if missing := [name for name in needed if name not in recorded]:
         raise ValueError(f"a shot needs {missing[0]!r}")
-    row: Row = {column.name: UNKNOWN[column.type] for column in COLUMNS}
-    row.update(recorded, schema_version=VERSION)
-    for column in COLUMNS:
+    row: Row = {column.name: UNKNOWN[column.type] for column in SHOT_COLUMNS}
+    row.update(recorded, schema_version=SHOTS_VERSION)
+    for column in SHOT_COLUMNS:
         if column.type == "reals":
             row[column.name] = [float(value) for value in row[column.name]]
     origin = np.array([row["robot_x"], row["robot_y"]], dtype=np.float64)

@@ -41,7 +41,7 @@ class Traits(NamedTuple):
     kick_error: float
 
 
-TRAITS = record_dtype(Traits)
+FITTED_TRAITS = record_dtype(Traits)
 """The record of :class:`Traits`."""
 
 
@@ -81,7 +81,7 @@ class Population(Settings):
         medians = (self.max_speed, self.acceleration, self.braking, self.delay)
         rows[:, :4] = np.array(medians) * np.exp(self.spread * normal[:, :4])
         *_, beside, astray = normal.T
-        drawn = rows.view(TRAITS)[:, 0]
+        drawn = rows.view(FITTED_TRAITS)[:, 0]
         drawn["offset"], drawn["kick_speed"] = self.offset * beside, self.kick_speed
         drawn["kick_error"] = self.kick_error * astray
         return rows

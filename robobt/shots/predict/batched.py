@@ -51,7 +51,7 @@ ADAM = (0.9, 0.999, 1e-7)
 """Keras' defaults: the gain that counts as an improvement, and Adam's beta 1, beta 2 and epsilon."""
 
 
-class Task(NamedTuple):
+class TrainingSet(NamedTuple):
     """What one network learns from: float32 inputs (n, F) and labels (n,), and the same held out."""
 
     inputs: Tensor
@@ -72,7 +72,7 @@ def batch_bounds(samples: int, batch: int) -> list[int]:
     return bounds
 
 
-def train_networks(tasks: Sequence[Task], recipe: Recipe = Recipe()) -> list[ShotNetwork]:
+def train_networks(tasks: Sequence[TrainingSet], recipe: Recipe = Recipe()) -> list[ShotNetwork]:
     """Train a network for every task, all at once; they come back in the order of the tasks.
 
     Tasks whose epochs begin their batches at the same samples are trained
@@ -95,7 +95,7 @@ class _Group:
     weights, what Adam and the stopping rules remember, and its data, padded to the longest.
     """
 
-    def __init__(self, tasks: list[Task], recipe: Recipe) -> None:
+    def __init__(self, tasks: list[TrainingSet], recipe: Recipe) -> None:
         self.recipe = recipe
         self.generators = [torch.Generator().manual_seed(task.seed) for task in tasks]
         width = tasks[0].inputs.shape[1]

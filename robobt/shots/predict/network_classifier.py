@@ -15,7 +15,7 @@ from sklearn.utils import Tags
 from sklearn.utils.multiclass import check_classification_targets
 from sklearn.utils.validation import check_is_fitted, validate_data
 
-from robobt.shots.predict.batched import Recipe, Task, train_networks
+from robobt.shots.predict.batched import Recipe, TrainingSet, train_networks
 from robobt.world.geometry import FloatArray
 
 
@@ -79,7 +79,7 @@ class NetworkClassifier(ClassifierMixin, BaseEstimator):  # type: ignore[misc]
         likelier = (self.decision_function(X) >= 0.0).astype(int)
         return np.asarray(self.classes_[likelier])
 
-    def _task(self, X: ArrayLike, y: ArrayLike, held_out: ArrayLike | None) -> Task:  # noqa: N803
+    def _task(self, X: ArrayLike, y: ArrayLike, held_out: ArrayLike | None) -> TrainingSet:  # noqa: N803
         inputs, given = validate_data(self, X, y, dtype=np.float32)
         check_classification_targets(given)
         self.classes_, labels = np.unique(given, return_inverse=True)
@@ -99,7 +99,7 @@ class NetworkClassifier(ClassifierMixin, BaseEstimator):  # type: ignore[misc]
             if held.shape != labels.shape or held.all() or not held.any():
                 raise ValueError("held_out must name some of the samples, and not all")
         x, t = torch.tensor(inputs), torch.tensor(labels, dtype=torch.float32)
-        return Task(x[~held], t[~held], x[held], t[held], self.random_state)
+        return TrainingSet(x[~held], t[~held], x[held], t[held], self.random_state)
 
     def __sklearn_tags__(self) -> Tags:
         tags = super().__sklearn_tags__()

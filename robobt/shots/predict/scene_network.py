@@ -13,11 +13,11 @@ from robobt.world.features import SCENE_HEAD, SCENE_OPPONENTS
 from robobt.world.geometry import FloatArray
 
 _INPUTS = 15
-_WIDTH = 48
-_BATCH, _RATE, _WEIGHT_DECAY = 256, 3e-3, 1e-4
+_LAYER_WIDTH = 48
+_BATCH_SIZE, _FIRST_LEARNING_RATE, _WEIGHT_DECAY = 256, 3e-3, 1e-4
 """Of the training: shots a step, learning rate of the first step, AdamW's decay."""
 
-_SURE = 4.6
+_LARGEST_LOG_ODDS = 4.6
 """Log-odds at most, 99 %: even an open goal is missed now and then."""
 
 
@@ -43,7 +43,11 @@ class SceneNetwork(nn.Module):
         self.register_buffer("mean", torch.zeros(_INPUTS))
         self.register_buffer("scale", torch.ones(_INPUTS))
         self.layers = nn.Sequential(
-            nn.Linear(_INPUTS, _WIDTH), nn.SiLU(), nn.Linear(_WIDTH, _WIDTH), nn.SiLU(), nn.Linear(_WIDTH, 1)
+            nn.Linear(_INPUTS, _LAYER_WIDTH),
+            nn.SiLU(),
+            nn.Linear(_LAYER_WIDTH, _LAYER_WIDTH),
+            nn.SiLU(),
+            nn.Linear(_LAYER_WIDTH, 1),
         )
 
     def inputs(self, scenes: Tensor) -> Tensor:
@@ -81,7 +85,7 @@ class SceneNetwork(nn.Module):
         scores: Tensor = self.layers((self.inputs(scenes) - self.mean) / self.scale).squeeze(2)
         # A place that is empty lies far behind the shooter.
         behind = torch.relu(-1.0 - scenes[:, SCENE_HEAD::4])
-        least: Tensor = (scores + behind).clamp(max=_SURE).min(1)[0]
+        least: Tensor = (scores + behind).clamp(max=_LARGEST_LOG_ODDS).min(1)[0]
         return least
 
     def forward(self, scenes: Tensor) -> Tensor:
@@ -118,12 +122,12 @@ def train_scene_network(
         there = inputs[x[:, SCENE_HEAD::4] > -1.0]
         network.mean.copy_(there.mean(0))
         network.scale.copy_(there.std(0).clamp_min(1e-3))
-    adam = torch.optim.AdamW(network.parameters(), _RATE, weight_decay=_WEIGHT_DECAY)
-    steps = epochs * -(-len(x) // _BATCH)
+    adam = torch.optim.AdamW(network.parameters(), _FIRST_LEARNING_RATE, weight_decay=_WEIGHT_DECAY)
+    steps = epochs * -(-len(x) // _BATCH_SIZE)
     schedule = torch.optim.lr_scheduler.CosineAnnealingLR(adam, steps)
     loss_of = nn.BCEWithLogitsLoss()
     for epoch in range(epochs):
-        for chosen in torch.split(torch.randperm(len(x), generator=generator), _BATCH):
+        for chosen in torch.split(torch.randperm(len(x), generator=generator), _BATCH_SIZE):
             adam.zero_grad(set_to_none=True)
             loss_of(network.log_odds(x[chosen]), y[chosen]).backward()
             adam.step()

@@ -10,9 +10,9 @@ from numpy.typing import ArrayLike
 
 from robobt.models.card import Measured
 from robobt.models.policy import load_policy
-from robobt.shots.data.inputs import PLACES, asked_inputs
+from robobt.shots.data.inputs import PLACE_COLUMNS, asked_inputs
 from robobt.shots.data.problems import ShotDataError
-from robobt.shots.data.schema import COLUMNS, SCHEMA
+from robobt.shots.data.schema import SCHEMA, SHOT_COLUMNS
 from robobt.shots.predict.features import pair_features
 from robobt.shots.predict.validation import judge
 from robobt.statistics import calibration_error, mean_interval, wilson_interval
@@ -20,8 +20,10 @@ from robobt.world.features import SHOT
 from robobt.world.geometry import FloatArray
 
 RESAMPLES = 1000
-_SURE = 1e-6
-_NUMBERS = [column for column in COLUMNS if column.type in ("real", "reals") and column.name not in PLACES]
+_PROBABILITY_MARGIN = 1e-6
+_NUMBER_COLUMNS = [
+    column for column in SHOT_COLUMNS if column.type in ("real", "reals") and column.name not in PLACE_COLUMNS
+]
 
 
 def predicted_by(model: str | Path, table: pa.Table, lacking: dict[int, str] | None = None) -> FloatArray:
@@ -62,7 +64,9 @@ def _inputs(table: pa.Table, pairs: bool) -> FloatArray:
 def _lacking(table: pa.Table, index: int, pairs: bool) -> str:
     """Return the columns without which the inputs of a shot are not finite."""
     shot = table.slice(index, 1).to_pylist()[0]
-    known = {column.name: np.nan_to_num(shot[column.name], posinf=0.0, neginf=0.0) for column in _NUMBERS}
+    known = {
+        column.name: np.nan_to_num(shot[column.name], posinf=0.0, neginf=0.0) for column in _NUMBER_COLUMNS
+    }
     unknown = [name for name in known if not np.isfinite(shot[name]).all()]
     # Each is tried alone, all others known.
     tried = pa.Table.from_pylist([{**shot, **known, name: shot[name]} for name in unknown], SCHEMA)
@@ -76,14 +80,14 @@ def measured(probabilities: ArrayLike, scored: ArrayLike, prefix: str = "") -> d
     The interval of the accuracy is Wilson's, that of the log-loss Student's over the shots, that of
     the calibration error from :data:`RESAMPLES` resamplings of the shots. Names begin with ``prefix``.
     """
-    p = np.clip(np.asarray(probabilities, dtype=np.float64), _SURE, 1.0 - _SURE)
+    p = np.clip(np.asarray(probabilities, dtype=np.float64), _PROBABILITY_MARGIN, 1.0 - _PROBABILITY_MARGIN)
     goal = np.asarray(scored) == 1
     judged = judge(p, goal)
     right = wilson_interval(round(judged.accuracy * judged.shots), judged.shots)
     losses = -np.where(goal, np.log(p), np.log1p(-p))
     loss = mean_interval(losses)
     # One shot alone tells nothing about the others' losses: they may be any.
-    lowest, highest = (loss.low, loss.high) if len(losses) > 1 else (0.0, -float(np.log(_SURE)))
+    lowest, highest = (loss.low, loss.high) if len(losses) > 1 else (0.0, -float(np.log(_PROBABILITY_MARGIN)))
     drawn = np.random.default_rng(0).integers(0, len(p), (RESAMPLES, len(p)))
     low, high = np.quantile([calibration_error(p[rows], goal[rows]) for rows in drawn], (0.025, 0.975))
     figures = {

@@ -34,7 +34,7 @@ ShippedModel = Literal["shot_nn", "shot_expected", "shot_best"]
 RECIPE_SHOTS = 6000
 """Shots that the network of Table 1 is trained on, ten times the paper's: more only takes longer."""
 
-_HELD_OUT = 0.1
+_HELD_OUT_SHARE = 0.1
 
 
 def train_shipped(
@@ -75,7 +75,7 @@ def train_shipped(
     """
     scenes, labels = _data(name, table)
     order = np.random.default_rng([seed, 7]).permutation(len(scenes))
-    held, used = np.split(order, [round(_HELD_OUT * len(order))])
+    held, used = np.split(order, [round(_HELD_OUT_SHARE * len(order))])
     observation: ObservationSpec = SHOT_SCENE
     inputs = scenes
     if name == "shot_nn":

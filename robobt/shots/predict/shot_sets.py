@@ -80,7 +80,7 @@ def _own_shots() -> Path:
             if (folder / name).is_file():
                 return folder / name
     raise ShotDataError(
-        "there are no shots: collect some with 'robobt collect shots --protocol paper "
+        "there are no shots: collect some with 'robobt shots collect --protocol paper "
         "--out out/paper_shots.parquet', or name them with --data; a clone of the repository has "
         "models/paper_shots.parquet"
     )

@@ -25,16 +25,16 @@ from robobt.sim.contacts.touching import Shapes, find
 from robobt.sim.records import (
     BIAS,
     CONTACT,
+    CONTACT_MEMORY,
     MASSES,
-    MEMORY,
     MOVING,
     SOLVER,
     Bias,
     Body,
     Contact,
+    ContactMemory,
     IntArray,
     Masses,
-    Memory,
     Moving,
     Records,
     Solver,
@@ -45,7 +45,7 @@ from robobt.sim.settings import SimSettings
 from robobt.world.compiled import compiled_inline, compiled_lean
 from robobt.world.geometry import FloatArray
 
-_SETTLED = 1e-12
+_SETTLED_IMPULSE = 1e-12
 """The passes end when no impulse changes by more than this [N s]."""
 
 _LONG_AGO = -1e9
@@ -67,7 +67,7 @@ class ContactArrays(NamedTuple):
     def forget(self, arenas: IntArray | int | slice) -> None:
         """Forget the contacts in these arenas, because bodies have been placed elsewhere."""
         self.bias[arenas] = 0.0
-        self.memory.view(MEMORY)["when"][arenas] = _LONG_AGO
+        self.memory.view(CONTACT_MEMORY)["when"][arenas] = _LONG_AGO
 
     def weigh(self, arenas: int | slice, mass: float) -> None:
         """Give the robots of arenas another mass [kg]."""
@@ -112,7 +112,7 @@ def contact_arrays(
         solver=solver.reshape(1).view(np.float64).reshape(1, -1),
         masses=np.zeros((n, size(MASSES))),
         bias=np.zeros((n, robots + 1, size(BIAS))),
-        memory=np.zeros((n, pairs, size(MEMORY))),
+        memory=np.zeros((n, pairs, size(CONTACT_MEMORY))),
         contacts=np.zeros((pairs, size(CONTACT))),
         moving=np.zeros((robots + 2, size(MOVING))),
     )
@@ -127,7 +127,7 @@ class Solving(NamedTuple):
 
     masses: Masses
     bias: Records[Bias]  # (R + 1,)
-    memory: Records[Memory]  # (pairs,)
+    memory: Records[ContactMemory]  # (pairs,)
     contacts: Records[Contact]  # (pairs,) scratch
     moving: Records[Moving]  # (R + 2,) scratch
 
@@ -246,5 +246,5 @@ def _solve(solver: Solver, contacts: Records[Contact], moving: Records[Moving], 
                 b.bias_vy += jy * b.mass
                 b.bias_omega += b.inertia * (row.r2x * jy - row.r2y * jx)
                 most = max(most, abs(along))
-        if most < _SETTLED:
+        if most < _SETTLED_IMPULSE:
             return

@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import cos, inf, sin, sqrt
 from typing import NamedTuple
 
-from robobt.sim.records import Body, Contact, Edge, Part, Records, Solver, Wall
+from robobt.sim.records import Body, Contact, Edge, HullPart, Records, Solver, WallBox
 from robobt.world.compiled import compiled_inline, compiled_lean
 from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS
 
@@ -13,9 +13,9 @@ from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS
 class Shapes(NamedTuple):
     """The shapes that bodies can touch, equal in all arenas."""
 
-    walls: Records[Wall]  # (W,) relative to an arena's centre
+    walls: Records[WallBox]  # (W,) relative to an arena's centre
     edges: Records[Edge]  # (E,) of all parts of a hull
-    parts: Records[Part]  # (P,) of a hull
+    parts: Records[HullPart]  # (P,) of a hull
     solver: Solver
 
 
@@ -119,7 +119,7 @@ def _find_ball(
 
 
 @compiled_lean
-def _to_box(x: float, y: float, box: Wall) -> tuple[float, float, float]:
+def _to_box(x: float, y: float, box: WallBox) -> tuple[float, float, float]:
     """Return the direction from a point to the nearest one of a box, and how far it is.
 
     Inside the box that is the direction away from the nearest side, and minus the depth.
@@ -140,7 +140,7 @@ def _to_box(x: float, y: float, box: Wall) -> tuple[float, float, float]:
 
 
 @compiled_lean
-def _to_outline(x: float, y: float, edges: Records[Edge], part: Part) -> tuple[float, float, float]:
+def _to_outline(x: float, y: float, edges: Records[Edge], part: HullPart) -> tuple[float, float, float]:
     """Return direction and distance for a convex outline, which may have only one corner."""
     first, last = int(part.first), int(part.last)
     inside = last > first + 1

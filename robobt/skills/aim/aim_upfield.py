@@ -14,9 +14,9 @@ from robobt.world.geometry import FloatArray, Point, segment_distance, wrap_angl
 from robobt.world.records import mover_records, movers_of
 from robobt.world.rules import has_ball
 
-_TURNS = tuple(radians(turn) for turn in (0, 15, -15, 30, -30, 45, -45, 60, -60, 75, -75, 90, -90))
-_ENOUGH = 0.5
-_TOLERANCE = radians(6.0)
+_UPFIELD_TURNS = tuple(radians(turn) for turn in (0, 15, -15, 30, -30, 45, -45, 60, -60, 75, -75, 90, -90))
+_WIDEST_LANE = 0.5
+_UPFIELD_TOLERANCE = radians(6.0)
 
 
 @skill
@@ -45,7 +45,7 @@ class AimUpfield(Skill):
         held = has_ball(self.me, frame.ball)
         best: Point = (goal_x, goal_y)
         most = -inf
-        for turn, room in zip(_TURNS, rooms, strict=True):
+        for turn, room in zip(_UPFIELD_TURNS, rooms, strict=True):
             end = (x + self.reach * cos(ahead + turn), y + self.reach * sin(ahead + turn))
             outside = max(0.0, abs(end[0]) - frame.field.half_length, abs(end[1]) - frame.field.half_width)
             value = room - 0.1 * abs(turn) - outside
@@ -53,13 +53,13 @@ class AimUpfield(Skill):
                 value -= 0.1 * abs(wrap_angle(ahead + turn - self.me.heading))
             if value > most:
                 best, most = end, value
-        self.store.shot = Shot(best, _TOLERANCE, 0.0)
+        self.store.shot = Shot(best, _UPFIELD_TOLERANCE, 0.0)
         return self.succeed("upfield")
 
 
 @compiled
 def _rooms(x: float, y: float, ahead: float, reach: float, opponents_: FloatArray) -> FloatArray:
-    """Return how far the nearest opponent is from the lane at each turn, at most ``_ENOUGH`` [m].
+    """Return how far the nearest opponent is from the lane at each turn, at most ``_WIDEST_LANE`` [m].
 
     Args:
         x: x coordinate of the ball [m].
@@ -68,8 +68,8 @@ def _rooms(x: float, y: float, ahead: float, reach: float, opponents_: FloatArra
         reach: length of the lanes [m].
         opponents_: the opponents, as :func:`~robobt.world.records.movers` returns them.
     """
-    rooms, opponents = np.full(len(_TURNS), _ENOUGH), mover_records(opponents_)
-    for k, turn in enumerate(_TURNS):
+    rooms, opponents = np.full(len(_UPFIELD_TURNS), _WIDEST_LANE), mover_records(opponents_)
+    for k, turn in enumerate(_UPFIELD_TURNS):
         end = (x + reach * cos(ahead + turn), y + reach * sin(ahead + turn))
         for opponent in opponents:
             room = segment_distance((opponent.x, opponent.y), (x, y), end)

@@ -52,7 +52,7 @@ class DrawGoalkeeper(Skill):
         frame, me, ball = self.frame, self.me, self.ball
         if not has_ball(me, ball):
             return self.fail("it does not have the ball")
-        if not 0.0 <= frame.time - self._last < _PAUSE:
+        if not 0.0 <= frame.time - self._last < _RESTART_PAUSE:
             self._began = frame.time
             self._side = min((1.0, -1.0), key=lambda side: abs(wrap_angle(self._aim(side) - me.heading)))
         self._last = frame.time
@@ -75,7 +75,7 @@ class DrawGoalkeeper(Skill):
         return direction(self.me.position, (field.half_length, y))
 
 
-_PAUSE = 1.0
+_RESTART_PAUSE = 1.0
 """An interruption longer than this resets the skill [s]."""
 
 _POINTS_AT = 0.06

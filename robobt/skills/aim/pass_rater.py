@@ -17,9 +17,8 @@ from robobt.skills.store import Pass
 from robobt.world.ball_model import BallModel
 from robobt.world.geometry import Point, distance
 from robobt.world.rules import in_own_defense_area, in_their_defense_area
-from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS, Frame, RobotState
+from robobt.world.state import ROBOT_RADIUS, TOUCH_DISTANCE, Frame, RobotState
 
-_BODY = ROBOT_RADIUS + BALL_RADIUS
 _LANE_SHARES = (0.2, 0.4, 0.6, 0.8, 1.0)
 
 
@@ -109,7 +108,7 @@ class PassRater(Settings):
         dx, dy = px - robot_x, py - robot_y
         gap = np.sqrt(dx * dx + dy * dy)
         towards = (dx * vx + dy * vy) / np.maximum(gap, 1e-9)
-        gap = np.maximum(gap - _BODY, 0.0)
+        gap = np.maximum(gap - TOUCH_DISTANCE, 0.0)
         needed = (np.sqrt(towards * towards + 2.0 * acceleration * gap) - towards) / acceleration
         ahead = np.maximum(needed, gap / top) - arrival
         return [start + self.reaction for start in ahead.min(axis=(1, 2)).tolist()]

@@ -8,8 +8,8 @@ from robobt.tree import Status
 from robobt.world.geometry import distance, segment_distance
 from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS, RobotState
 
-_ARRIVAL_SPEED = 1.0
-_MAX_SPEED = 6.0
+_RECEIVED_SPEED = 1.0
+_MAX_CLEARANCE_SPEED = 6.0
 
 
 @skill
@@ -38,8 +38,8 @@ class SelectClearance(Skill):
         mates.sort(key=lambda mate: -mate.x)
         for mate in mates:
             if self._free(mate):
-                speed = frame.ball_model.kick_speed(distance(ball, mate.position), _ARRIVAL_SPEED)
-                store.pass_ = Pass(mate.id, mate.position, min(speed, _MAX_SPEED), 1.0)
+                speed = frame.ball_model.kick_speed(distance(ball, mate.position), _RECEIVED_SPEED)
+                store.pass_ = Pass(mate.id, mate.position, min(speed, _MAX_CLEARANCE_SPEED), 1.0)
                 return self.succeed(f"to {mate.id}")
         return self.fail("no team-mate can be reached")
 

@@ -18,10 +18,10 @@ from robobt.world.sketch import Sketch
 from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS, Frame, RobotState
 
 _IN_LINE = radians(25.0)
-_BEHIND = ROBOT_RADIUS + BALL_RADIUS + 0.05
-_NEAR = 0.3
+_STANDOFF_DISTANCE = ROBOT_RADIUS + BALL_RADIUS + 0.05
+_GRAB_DISTANCE = 0.3
 _GRAB_SPEED = 0.4
-_PULL_SPEED = 0.5
+_FETCHING_SPEED = 0.5
 """Speed when driving backwards with the ball [m/s]."""
 
 _PULL_ACCELERATION = 0.8
@@ -69,9 +69,12 @@ def pull(
         return command, "pulling it"
     outwards = direction(place, ball)
     off_line = abs(wrap_angle(direction(me.position, ball) - outwards))
-    if off_line < _IN_LINE and distance(me.position, ball) < _NEAR:
+    if off_line < _IN_LINE and distance(me.position, ball) < _GRAB_DISTANCE:
         return grab(me, frame.ball, _GRAB_SPEED, frame.period), "taking it"
-    behind: Point = (ball[0] - _BEHIND * cos(outwards), ball[1] - _BEHIND * sin(outwards))
+    behind: Point = (
+        ball[0] - _STANDOFF_DISTANCE * cos(outwards),
+        ball[1] - _STANDOFF_DISTANCE * sin(outwards),
+    )
     way = travel(
         frame, me, behind, outwards, free, avoid_ball=True, goalkeeper=True, placing=placing, sketch=sketch
     )
@@ -105,7 +108,7 @@ class FetchBall(DrivingSkill):
             self.me.ball_contact,
             place,
             self.drive_limits,
-            _PULL_SPEED,
+            _FETCHING_SPEED,
             placing=False,
             sketch=self.draw,
         )

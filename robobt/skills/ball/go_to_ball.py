@@ -26,24 +26,23 @@ from robobt.world.geometry import Point, direction, distance, wrap_angle
 from robobt.world.limits import RobotLimits
 from robobt.world.records import Ball, Robot
 from robobt.world.rules import has_ball
-from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS, BallState, Frame, RobotState
+from robobt.world.state import TOUCH_DISTANCE, BallState, Frame, RobotState
 
 HANDOVER_DISTANCE = 0.2
 """Distance to the ball's centre at which the approach ends [m]. Source: the paper's Go-To-Ball."""
 
 FACING_BALL = radians(30.0)
 _FACING_STILL = radians(60.0)
-_CLOSE = 0.16
+_APPROACH_DISTANCE = 0.16
 """Distance from the ball's centre at which the approach aims [m]; the planner's detour round the ball is
 slightly narrower."""
-_REACHABLE = 0.03
-_ROUND = radians(30.0)
-_TURN_DISTANCE = 1.0
+_REACHABLE_ERROR = 0.03
+_ROUND_BALL_ANGLE = radians(30.0)
+_FACE_BALL_DISTANCE = 1.0
 _LOOKING = radians(10.0)
 """Heading error allowed while the robot is still on its way."""
-_SURE = 0.8
+_BRAKING_SHARE = 0.8
 """Share of the robot's braking that the plan relies on."""
-_TOUCHING = ROBOT_RADIUS + BALL_RADIUS
 _RESTS = 0.05
 """A ball slower than this is approached where it is [m/s]."""
 
@@ -68,12 +67,12 @@ class Approach:
 Policy = Callable[[Store, Approach], RobotCommand]
 """A policy for approaching the ball, called in every tick."""
 
-POLICIES: Registry[Callable[..., object]] = Registry("go-to-ball policy")
+GO_TO_BALL_POLICIES: Registry[Callable[..., object]] = Registry("go-to-ball policy")
 """The policies by name. Each is a function, or a class of which each leaf builds one instance."""
 
-_BY_NAME = policies_by_name(POLICIES)
+_GO_TO_BALL_BY_NAME = policies_by_name(GO_TO_BALL_POLICIES)
 
-GoToBallPolicy: TypeAlias = Annotated[str | Mapping[str, object] | Policy, _BY_NAME]
+GoToBallPolicy: TypeAlias = Annotated[str | Mapping[str, object] | Policy, _GO_TO_BALL_BY_NAME]
 """A policy for approaching the ball, as parameters accept it."""
 
 
@@ -89,7 +88,7 @@ class GoToBall(DrivingSkill):
 
     Args:
         policy: what decides the motion, by name or as ``{name: NAME, SETTING: VALUE}``: "geometric", or
-            another of ``POLICIES``; or a trained one by its model's name or file.
+            another of ``GO_TO_BALL_POLICIES``; or a trained one by its model's name or file.
         approach: "nearest" drives straight at the ball; "behind_target" comes
             from the side opposite to ``store.shot``, else ``store.target``, else
             the attacked goal.
@@ -113,7 +112,7 @@ class GoToBall(DrivingSkill):
         super().__post_init__()
         if self.approach not in ("nearest", "behind_target"):
             raise ValueError(f"approach must be 'nearest' or 'behind_target', not {self.approach!r}")
-        self._decide = find_policy(self.policy, _BY_NAME, LearnedApproach)
+        self._decide = find_policy(self.policy, _GO_TO_BALL_BY_NAME, LearnedApproach)
         self._learned = self._decide if isinstance(self._decide, LearnedApproach) else None
 
     def on_running(self) -> Status:
@@ -153,11 +152,11 @@ class GoToBall(DrivingSkill):
         facing = direction(meeting, aim)
         place = beside(meeting, facing)
         allowed = allowed_target(self.frame, self.me, place, goalkeeper=self.goalkeeper)
-        return facing if distance(allowed, place) < _REACHABLE else None
+        return facing if distance(allowed, place) < _REACHABLE_ERROR else None
 
 
-@POLICIES.register("geometric")
-class Geometric(Settings):
+@GO_TO_BALL_POLICIES.register("geometric")
+class GeometricApproach(Settings):
     """Drive to the place beside the ball along the planned way, facing the ball."""
 
     arrival_speed: float = Field(0.5, ge=0, le=10, description="final speed, which the pick-up keeps [m/s]")
@@ -167,7 +166,7 @@ class Geometric(Settings):
         frame, me = store.frame, store.me
         meeting, facing = approach.meeting, approach.facing
         bearing = direction(me.position, meeting)
-        round_it = facing is not None and abs(wrap_angle(bearing - facing)) > _ROUND
+        round_it = facing is not None and abs(wrap_angle(bearing - facing)) > _ROUND_BALL_ANGLE
         heading, far = approach_heading(me, frame.ball, meeting)
         if not far and facing is not None:
             heading = facing
@@ -220,7 +219,7 @@ def _closing_speed(store: Store) -> float:
     frame, me = store.frame, store.me
     limits, ball = me.limits, frame.ball
     way = hypot(ball.x - me.x, ball.y - me.y) - HANDOVER_DISTANCE - me.speed * frame.period
-    braking = _SURE * min(limits.braking, limits.lateral_braking)
+    braking = _BRAKING_SHARE * min(limits.braking, limits.lateral_braking)
     return ball.speed + sqrt(limits.catch_speed**2 + 2.0 * braking * max(0.0, way))
 
 
@@ -235,8 +234,8 @@ def _reached(contact: object) -> tuple[float, float]:
     return (within, pi)
 
 
-@POLICIES.register("ddpg")
-class Ddpg(LearnedApproach):
+@GO_TO_BALL_POLICIES.register("ddpg")
+class DdpgApproach(LearnedApproach):
     """Drive straight at the ball, from any side, by the shipped model that was trained with DDPG."""
 
     def __init__(self) -> None:
@@ -246,7 +245,7 @@ class Ddpg(LearnedApproach):
 @compilable
 def beside(ball: Point, facing: float) -> Point:
     """Return where a robot that faces ``ball`` along ``facing`` [rad] stands before it takes the ball [m]."""
-    return (ball[0] - _CLOSE * cos(facing), ball[1] - _CLOSE * sin(facing))
+    return (ball[0] - _APPROACH_DISTANCE * cos(facing), ball[1] - _APPROACH_DISTANCE * sin(facing))
 
 
 def meeting_point(frame: Frame, me: RobotState, limits: RobotLimits) -> Point:
@@ -275,7 +274,7 @@ def meeting_law(me: Robot, ball: Ball, pace: tuple[float, float, float], slide: 
         dx, dy = x - me.x, y - me.y
         gap = hypot(dx, dy)
         towards = (me.vx * dx + me.vy * dy) / gap if gap > 0.0 else 0.0
-        time = stop_time(max(0.0, gap - _TOUCHING), towards, acceleration, braking, top)
+        time = stop_time(max(0.0, gap - TOUCH_DISTANCE), towards, acceleration, braking, top)
         way = way_in(time, speed, speed, slide, roll)
         x, y = ball.x + ux * way, ball.y + uy * way
     return x, y
@@ -303,6 +302,6 @@ def approach_heading(me: Robot, ball: Ball, meeting: Point) -> tuple[float, bool
     """Return the heading on the way to the ``meeting`` point [rad], and whether that point is still far."""
     here = (me.x, me.y)
     heading = direction(here, (ball.x, ball.y))
-    if distance(here, meeting) < _TURN_DISTANCE:
+    if distance(here, meeting) < _FACE_BALL_DISTANCE:
         return heading, False
     return roughly(me.heading, heading, _LOOKING), True

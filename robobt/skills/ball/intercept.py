@@ -19,18 +19,18 @@ from robobt.world.limits import RobotLimits
 from robobt.world.sketch import Sketch
 from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS, BallState, Frame, RobotState
 
-_FRONT = ROBOT_RADIUS + BALL_RADIUS - 0.015
+_MEETING_DISTANCE = ROBOT_RADIUS + BALL_RADIUS - 0.015
 """Distance between the centres of robot and ball when they meet [m]; about that of a flat front."""
-_SLOW = 0.2
+_SLOW_BALL_SPEED = 0.2
 """A ball slower than this is approached instead of awaited [m/s]."""
-_CLOSE = 0.2
-_SOON = 1.0
+_CLOSE_RANGE = 0.2
+_FACING_RANGE = 1.0
 """The robot faces a ball closer than this exactly [m]."""
 _NEAR_ENOUGH = 0.15
 """Distance within which the robot counts as there [m]; without it the robot would back away from the ball
 over the last centimetres."""
-_STEP = 0.15
-_HORIZON = 4.0
+_SEARCH_STEP = 0.15
+_SEARCH_HORIZON = 4.0
 
 
 def earliest_meeting(
@@ -54,10 +54,10 @@ def earliest_meeting(
         way = min(most, frame.ball_model.way_in(time, speed, rolling))
         point = (ball.x + way * ux, ball.y + way * uy)
         late = _arrival(me, point, ux, uy, limits) - time
-        if late <= 0.0 or way >= most or time >= _HORIZON:
+        if late <= 0.0 or way >= most or time >= _SEARCH_HORIZON:
             break
         before = time
-        time += _STEP
+        time += _SEARCH_STEP
     if late > 0.0:
         return (point, time)
     for _ in range(4):
@@ -97,12 +97,14 @@ def meet(
     gap = hypot(dx, dy)
     speed = ball.speed
     heading = atan2(dy, dx)
-    if gap < _CLOSE and (speed < _SLOW or me.ball_contact):
+    if gap < _CLOSE_RANGE and (speed < _SLOW_BALL_SPEED or me.ball_contact):
         return grab(me, ball, 0.5, frame.period)
     (x, y), _ = earliest_meeting(frame, me, limits, rolling)
-    ux, uy = (ball.vx / speed, ball.vy / speed) if speed > _SLOW else (-cos(heading), -sin(heading))
-    place = (x + _FRONT * ux, y + _FRONT * uy)
-    if gap > _SOON:
+    ux, uy = (
+        (ball.vx / speed, ball.vy / speed) if speed > _SLOW_BALL_SPEED else (-cos(heading), -sin(heading))
+    )
+    place = (x + _MEETING_DISTANCE * ux, y + _MEETING_DISTANCE * uy)
+    if gap > _FACING_RANGE:
         heading = roughly(me.heading, heading, slack)
     order = travel(frame, me, place, heading, limits, goalkeeper=goalkeeper, sketch=sketch)
     order.dribbler = gap < 1.0
@@ -140,7 +142,7 @@ class Intercept(DrivingSkill):
 
 
 def _arrival(me: RobotState, point: Point, ux: float, uy: float, limits: RobotLimits) -> float:
-    dx, dy = point[0] + _FRONT * ux - me.x, point[1] + _FRONT * uy - me.y
+    dx, dy = point[0] + _MEETING_DISTANCE * ux - me.x, point[1] + _MEETING_DISTANCE * uy - me.y
     gap = hypot(dx, dy)
     if gap <= _NEAR_ENOUGH:
         return 0.0

@@ -11,10 +11,10 @@ from robobt.world.command import KickTrigger
 from robobt.world.compiled import compilable
 from robobt.world.rules import has_ball
 
-_PAUSE = 0.1
+_HOLD_INTERRUPTION = 0.1
 """An interruption longer than this resets the hold's duration [s]."""
 
-SPEED = 2.0
+LOOSE_KICK_SPEED = 2.0
 """Speed of the kick: the ball comes out to the side and should stay in the field [m/s]."""
 
 FOLLOW = 0.3
@@ -35,7 +35,7 @@ def has_lasted(hold: Hold, now: float, heading: float, patience: float) -> bool:
 
     ``heading`` is the robot's [rad], ``patience`` as in :class:`KickLoose`.
     """
-    if not 0.0 <= now - hold.seen < _PAUSE:
+    if not 0.0 <= now - hold.seen < _HOLD_INTERRUPTION:
         hold.since = now
     hold.seen = now
     return now - hold.since >= patience * (1.0 if cos(heading) > 0.0 else 2.0)
@@ -72,5 +72,9 @@ class KickLoose(Skill):
         if not has_lasted(self._hold, now, me.heading, self.patience):
             return self.fail("it may get away with the ball yet")
         command = self.store.command
-        command.vx, command.kick_speed, command.kick_trigger = FOLLOW, SPEED, KickTrigger.ON_CONTACT
+        command.vx, command.kick_speed, command.kick_trigger = (
+            FOLLOW,
+            LOOSE_KICK_SPEED,
+            KickTrigger.ON_CONTACT,
+        )
         return self.run("kicking it loose")

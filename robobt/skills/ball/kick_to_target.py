@@ -32,27 +32,27 @@ _SHOT_TOLERANCE = (radians(0.5), radians(4.0))
 _PASS_TOLERANCE = radians(1.5)
 _ROBOBULLS_TOLERANCE = {"shot": radians(1.0), "pass": radians(5.0)}
 
-_BEHIND = 0.16
+_BEHIND_BALL_DISTANCE = 0.16
 """Distance behind the ball at which the robot lines up [m]; just outside the planner's detour round the
 ball."""
 _THROUGH = 0.05
-_ROUND = 1.0
+_ROUND_BALL_TANGENT = 1.0
 """Tangent of the angle to the line of the kick from which the robot drives round the ball first."""
-_ROUND_RESTART = 0.35
+_ROUND_BALL_TANGENT_RESTART = 0.35
 """That tangent at a restart, where the robot must not touch the ball at an angle."""
 _RUN_UP_DISTANCE = 2.5
-_IN_MOUTH = 0.03
+_MOUTH_HALF_WIDTH = 0.03
 """A ball within this distance of the heading's line meets the mouth [m]."""
-_NEAR = 0.25
+_NEAR_BALL_DISTANCE = 0.25
 _GOT_AWAY = 0.7
-_CREEP = 0.5
-_TURN_DISTANCE = 1.2
-_FACING = radians(10.0)
+_CREEPING_SPEED = 0.5
+_FACE_TARGET_DISTANCE = 1.2
+_HEADING_SLACK = radians(10.0)
 """Heading error allowed while the robot is still driving behind the ball."""
-_AHEAD = radians(75.0)
+_TAKEN_BALL_ANGLE = radians(75.0)
 """Angle off the heading within which a ball is taken at once."""
-_REACHABLE = 0.03
-_LEFT_SHARE = 0.6
+_WALL_TOLERANCE = 0.03
+_KICKED_SPEED_SHARE = 0.6
 """A ball with this share of the kick's speed towards the target has been kicked."""
 _LEAST_KICK = 0.1
 """Slowest kick [m/s]."""
@@ -168,7 +168,7 @@ class KickToTarget(DrivingSkill):
         if self._robobulls is not None:
             return self._as_robobulls(self._robobulls, order)
         gap = distance(self.me.position, self.ball.position)
-        if gap < _NEAR:
+        if gap < _NEAR_BALL_DISTANCE:
             self._was_near = True
         elif self._was_near and gap > _GOT_AWAY:
             return self.fail("the ball got away")
@@ -214,7 +214,7 @@ class KickToTarget(DrivingSkill):
     def _come_from_behind(self, order: _Order) -> None:
         frame, me, ball = self.frame, self.me, self.ball
         limits = self.drive_limits
-        near = distance(me.position, ball.position) < _NEAR
+        near = distance(me.position, ball.position) < _NEAR_BALL_DISTANCE
         x, y = ball.position if near else meeting_point(frame, me, limits)
         line = direction((x, y), order.target)
         facing = line - atan2(ball.vy * cos(line) - ball.vx * sin(line), order.along)
@@ -222,18 +222,22 @@ class KickToTarget(DrivingSkill):
         # The robot's distance behind the ball and beside the line of the kick.
         back = (x - me.x) * ux + (y - me.y) * uy
         aside = abs((x - me.x) * uy - (y - me.y) * ux)
-        behind = (x - _BEHIND * ux, y - _BEHIND * uy)
+        behind = (x - _BEHIND_BALL_DISTANCE * ux, y - _BEHIND_BALL_DISTANCE * uy)
         allowed = allowed_target(frame, me, behind, goalkeeper=self.goalkeeper)
-        at_wall = distance(allowed, behind) > _REACHABLE
-        round_ = _ROUND if frame.game.in_play else _ROUND_RESTART
-        in_line = aside < round_ * back and (not near or aside < _IN_MOUTH)
-        close = self.take and near and abs(wrap_angle(direction(me.position, (x, y)) - me.heading)) < _AHEAD
+        at_wall = distance(allowed, behind) > _WALL_TOLERANCE
+        round_ = _ROUND_BALL_TANGENT if frame.game.in_play else _ROUND_BALL_TANGENT_RESTART
+        in_line = aside < round_ * back and (not near or aside < _MOUTH_HALF_WIDTH)
+        close = (
+            self.take
+            and near
+            and abs(wrap_angle(direction(me.position, (x, y)) - me.heading)) < _TAKEN_BALL_ANGLE
+        )
         if not in_line and frame.game.in_play and (has_ball(me, ball) or (at_wall and near) or close):
             # The ball is in front of the mouth but off the line, or cannot be approached from behind: take
             # it, then turn with it. Not at a restart, where the first touch is the kick.
-            self.store.command = grab(me, ball, _CREEP, frame.period)
+            self.store.command = grab(me, ball, _CREEPING_SPEED, frame.period)
             return
-        heading = facing if back < _TURN_DISTANCE else direction(me.position, (x, y))
+        heading = facing if back < _FACE_TARGET_DISTANCE else direction(me.position, (x, y))
         if in_line and not at_wall and back < _RUN_UP_DISTANCE:
             through = (x + _THROUGH * ux, y + _THROUGH * uy)
             if next_waypoint(frame, me, through, goalkeeper=self.goalkeeper)[0] == through:
@@ -243,10 +247,10 @@ class KickToTarget(DrivingSkill):
         place, final_speed = behind, RUN_UP_SPEED if in_line else 0.0
         if at_wall:
             heading = direction(me.position, (x, y))
-            place = (x - _BEHIND * cos(heading), y - _BEHIND * sin(heading))
-            final_speed = _CREEP
+            place = (x - _BEHIND_BALL_DISTANCE * cos(heading), y - _BEHIND_BALL_DISTANCE * sin(heading))
+            final_speed = _CREEPING_SPEED
         if not (in_line and near):
-            heading = roughly(me.heading, heading, _FACING)
+            heading = roughly(me.heading, heading, _HEADING_SLACK)
         self.store.command = travel(
             frame,
             me,
@@ -262,7 +266,7 @@ class KickToTarget(DrivingSkill):
 
     def _kick_if_aimed(self, order: _Order, gap: float) -> bool:
         me, ball = self.me, self.ball
-        if gap > _NEAR or (order.pass_ is not None and order.pass_.wait > 0.0):
+        if gap > _NEAR_BALL_DISTANCE or (order.pass_ is not None and order.pass_.wait > 0.0):
             return False
         c, s = cos(me.heading), sin(me.heading)
         sideways, ahead = c * ball.vy - s * ball.vx, c * ball.vx + s * ball.vy
@@ -287,7 +291,7 @@ class KickToTarget(DrivingSkill):
         if me.ball_contact:
             return False
         line = direction(ball.position, order.target)
-        return ball.vx * cos(line) + ball.vy * sin(line) > _LEFT_SHARE * order.along
+        return ball.vx * cos(line) + ball.vy * sin(line) > _KICKED_SPEED_SHARE * order.along
 
     def _as_robobulls(self, kick: RobobullsKick, order: _Order) -> Status:
         default = _ROBOBULLS_TOLERANCE["shot" if order.pass_ is None else "pass"]

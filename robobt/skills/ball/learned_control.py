@@ -216,7 +216,7 @@ def observer_of(name: str) -> Callable[[Frame, RobotState], FloatArray] | None:
 
 def policies_by_name(registry: Registry[Callable[..., object]], *besides: str) -> ByName:
     """Return a reader for the policies of a skill by name; other names are ``besides`` or models' names."""
-    also = "".join([f"{name}, and " for name in besides]) + "models by name or file (robobt models)"
+    also = "".join([f"{name}, and " for name in besides]) + "models by name or file (robobt list models)"
     return ByName(registry, others=lambda name: name in besides or _may_be_model(name), also=f"also {also}")
 
 

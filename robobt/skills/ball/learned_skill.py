@@ -17,7 +17,7 @@ class LearnedSkill(Skill):
     the skill fails and the robot stops.
 
     Args:
-        model: name of a shipped model (``robobt models``) or the path of a model
+        model: name of a shipped model (``robobt list models``) or the path of a model
             file; its card has the observation and the scale of the actions. Without a model the leaf fails.
 
     Raises:
@@ -38,7 +38,7 @@ class LearnedSkill(Skill):
     def on_running(self) -> Status:
         """Decide, or repeat the last decision, for one tick."""
         if self._control is None:
-            return self.fail("it has no model: give it one with model=NAME (robobt models lists them)")
+            return self.fail("it has no model: give it one with model=NAME (robobt list models shows them)")
         try:
             self.store.command = self._control.decide(self.frame, self.me, self.draw, self.store.team)
         except PolicyError as error:

@@ -43,7 +43,7 @@ class PolicySkill(Skill):
     def on_running(self) -> Status:
         """Decide, or repeat the last decision, for one tick."""
         if self._control is None:
-            return self.fail("it has no model: give it one with policy=NAME (robobt models lists them)")
+            return self.fail("it has no model: give it one with policy=NAME (robobt list models shows them)")
         try:
             command = self._control.decide(self.frame, self.me, self.draw, self.store.team)
         except PolicyError as error:

@@ -18,25 +18,24 @@ from robobt.skills.store import Store
 from robobt.tree import Registry, Status
 from robobt.world.command import KickTrigger, RobotCommand
 from robobt.world.geometry import Point, direction, wrap_angle
-from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS, BallState, RobotState
+from robobt.world.state import BALL_RADIUS, TOUCH_DISTANCE, BallState, RobotState
 
-_INSIDE = 0.6
+_OPEN_ANGLE_SHARE = 0.6
 """Share of the open angle on each side of the aim within which the robot kicks."""
-_LEFT = 1.0
+_LEAVING_SPEED = 1.0
 """A ball that is this much faster than the robot after a kick has left [m/s]."""
-_TOUCHING = ROBOT_RADIUS + BALL_RADIUS
 _LOST_AFTER = 0.15
 """A ball out of the mouth for longer is lost [s]: it may bounce on the dribbler for a tick or two."""
 
 Policy = Callable[[Store], RobotCommand]
 """A policy for shooting, called in every tick while the robot has the ball."""
 
-POLICIES: Registry[Callable[..., object]] = Registry("shoot policy")
+SHOOT_POLICIES: Registry[Callable[..., object]] = Registry("shoot policy")
 """The policies by name. Each is a function, or a class of which each leaf builds one instance."""
 
-_BY_NAME = policies_by_name(POLICIES)
+_SHOOT_BY_NAME = policies_by_name(SHOOT_POLICIES)
 
-ShootPolicy: TypeAlias = Annotated[str | Mapping[str, object] | Policy, _BY_NAME]
+ShootPolicy: TypeAlias = Annotated[str | Mapping[str, object] | Policy, _SHOOT_BY_NAME]
 """A policy for shooting, as parameters accept it."""
 
 
@@ -50,7 +49,7 @@ class Shoot(Skill):
 
     Args:
         policy: what decides turning and kick, by name or as ``{name: NAME, SETTING: VALUE}``: "geometric"
-            aims at ``store.shot``, else at the middle of the goal; "ddpg", or another of ``POLICIES``;
+            aims at ``store.shot``, else at the middle of the goal; "ddpg", or another of ``SHOOT_POLICIES``;
             or another trained one by its model's name or file.
 
     Raises:
@@ -66,7 +65,7 @@ class Shoot(Skill):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        self._decide = find_policy(self.policy, _BY_NAME, LearnedShot)
+        self._decide = find_policy(self.policy, _SHOOT_BY_NAME, LearnedShot)
 
     @property
     def learned(self) -> bool:
@@ -96,8 +95,8 @@ class Shoot(Skill):
         return self.run("kicking" if self.store.command.kick_speed > 0.0 else "turning with the ball")
 
 
-@POLICIES.register("geometric")
-class Geometric(Settings):
+@SHOOT_POLICIES.register("geometric")
+class GeometricShot(Settings):
     """Turn to the aim as fast as the dribbler holds the ball, and kick once the ball would leave towards it.
 
     The ball leaves along the heading and keeps its sideways velocity. The kick's speed is the rules' 6.5 m/s
@@ -136,7 +135,7 @@ class LearnedShot:
         decided, me = self._control.decide(store.frame, store.me, store.draw), store.me
         held = me.limits.hold_acceleration
         # Turning at rate w with the ball at distance L needs the acceleration w^2 L.
-        fastest = sqrt(held / _TOUCHING)
+        fastest = sqrt(held / TOUCH_DISTANCE)
         decided.omega = min(fastest, max(-fastest, decided.omega))
         speed = me.speed
         if speed > held * store.frame.period:
@@ -146,8 +145,8 @@ class LearnedShot:
         return decided
 
 
-@POLICIES.register("ddpg")
-class Ddpg(LearnedShot):
+@SHOOT_POLICIES.register("ddpg")
+class DdpgShot(LearnedShot):
     """Turn and kick by the shipped model that was trained with DDPG."""
 
     def __init__(self) -> None:
@@ -164,8 +163,8 @@ def _aim(store: Store) -> tuple[Point, float]:
     upper, lower = (direction((x, y), (goal[0], side)) for side in (half, -half))
     middle = direction((x, y), goal)
     nearer_post = min(abs(wrap_angle(upper - middle)), abs(wrap_angle(lower - middle)))
-    return goal, _INSIDE * nearer_post
+    return goal, _OPEN_ANGLE_SHARE * nearer_post
 
 
 def _has_left(me: RobotState, ball: BallState) -> bool:
-    return not me.ball_contact and hypot(ball.vx - me.vx, ball.vy - me.vy) > _LEFT
+    return not me.ball_contact and hypot(ball.vx - me.vx, ball.vy - me.vy) > _LEAVING_SPEED

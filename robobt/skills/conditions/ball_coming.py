@@ -6,9 +6,7 @@ from robobt.motion.pilot import travel_time
 from robobt.skills.base import Condition, skill
 from robobt.tree import Status
 from robobt.world.rules import has_ball
-from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS
-
-_TOUCHING = ROBOT_RADIUS + BALL_RADIUS
+from robobt.world.state import ROBOT_RADIUS, TOUCH_DISTANCE
 
 
 @skill
@@ -37,7 +35,7 @@ class BallComing(Condition):
         dx, dy = me.x - ball.x, me.y - ball.y
         ahead = (dx * ball.vx + dy * ball.vy) / speed
         aside = (dy * ball.vx - dx * ball.vy) / speed
-        if ahead < _TOUCHING:
+        if ahead < TOUCH_DISTANCE:
             return self.fail("the ball has passed")
         towards = (me.vx * ball.vy - me.vy * ball.vx) / speed * (1.0 if aside > 0.0 else -1.0)
         needed = travel_time(max(0.0, abs(aside) - ROBOT_RADIUS), towards, me.limits)

@@ -8,7 +8,7 @@ from robobt.skills.base import Condition, skill
 from robobt.skills.debounce import Debounce
 from robobt.tree import Status
 
-HELD = 0.1
+HOLDING_TIME = 0.1
 """Time for which the robot has to hold the ball to be no longer stuck [s]."""
 
 
@@ -40,7 +40,7 @@ class StuckAtBall(Condition):
         self._restart()
 
     def _restart(self) -> None:
-        self._stuck = Debounce(rise=self.patience, fall=HELD, on=False)
+        self._stuck = Debounce(rise=self.patience, fall=HOLDING_TIME, on=False)
         self._seen = -inf
 
     def on_running(self) -> Status:

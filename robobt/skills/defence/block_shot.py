@@ -15,10 +15,10 @@ from robobt.world.compiled import compilable
 from robobt.world.geometry import Point, closest_point_on_segment, direction, distance
 from robobt.world.records import Ball, Robot
 
-_SLOW = 0.5
+_NO_DIVE_SPEED = 0.5
 """Slowest ball for which the robot dives [m/s]."""
 
-_THERE = 0.04
+_BLOCKING_DISTANCE = 0.04
 """Distance from the line within which the robot stops the ball with its front [m]."""
 
 
@@ -101,12 +101,12 @@ def dive_speed(
     top, acceleration, braking = pace
     here, speed = (me.x, me.y), hypot(ball.vx, ball.vy)
     gap = distance(here, place)
-    if speed < _SLOW or gap < _THERE:
+    if speed < _NO_DIVE_SPEED or gap < _BLOCKING_DISTANCE:
         return 0.0
     time = time_for(distance((ball.x, ball.y), place), speed, rolling, slide, roll)
     towards = (me.vx * (place[0] - here[0]) + me.vy * (place[1] - here[1])) / gap
     least, most = 0.0, top
-    if _in_time_braking(gap - _THERE, towards, time, braking) or (
+    if _in_time_braking(gap - _BLOCKING_DISTANCE, towards, time, braking) or (
         _time_through(gap, towards, least, top, acceleration, braking) <= time
     ):
         return 0.0

@@ -6,7 +6,7 @@ from robobt.skills.base import Skill, skill
 from robobt.tree import Status
 from robobt.world.state import ROBOT_RADIUS
 
-_ROOM = 0.1
+_CENTRE_CIRCLE_GAP = 0.1
 
 
 @skill
@@ -33,7 +33,7 @@ class GoToKickoffPosition(Skill):
         taker = team.attacker if frame.game.restart_team is frame.team else None
         line = sorted({*team.attackers, me.id} - {taker})
         share = (line.index(me.id) + 0.5) / len(line) - 0.5
-        x = -(field.center_radius + 2.0 * ROBOT_RADIUS + _ROOM)
+        x = -(field.center_radius + 2.0 * ROBOT_RADIUS + _CENTRE_CIRCLE_GAP)
         target = (x, -share * self.spread * field.width)
         gently = self.spare_mates
         self.drive_to(target, (0.0, 0.0), thereabouts=gently, spare_mates=gently)

@@ -6,7 +6,7 @@ from robobt.skills.base import Skill, skill
 from robobt.tree import Status
 from robobt.world.state import ROBOT_RADIUS
 
-_BEHIND = 1.0 + 3.0 * ROBOT_RADIUS
+_WAITING_DISTANCE = 1.0 + 3.0 * ROBOT_RADIUS
 """Distance behind mark and ball at which all but kicker and goalkeeper wait; the rules ask for 1 m [m]."""
 
 
@@ -36,7 +36,7 @@ class GoToPenaltyPosition(Skill):
             number = [robot.id for robot in frame.own].index(me.id)
             y = (number + 0.5) / len(frame.own) * field.half_width
             # This also holds when the ball rolls back during play.
-            x = away * (max(away * mark, away * frame.ball.x) + _BEHIND)
+            x = away * (max(away * mark, away * frame.ball.x) + _WAITING_DISTANCE)
             target = (x, y)
         self.drive_to(target, frame.ball.position, avoid_ball=True, goalkeeper=self.goalkeeper)
         return self.run("taking position")

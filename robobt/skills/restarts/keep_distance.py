@@ -20,12 +20,12 @@ from robobt.world.geometry import (
 from robobt.world.rules import STOP_DISTANCE
 from robobt.world.state import ROBOT_RADIUS, Frame, RobotState
 
-_MARGIN = 0.05
-_TURNS = (0.0, *(side * step * pi / 12.0 for step in range(1, 12) for side in (1.0, -1.0)), pi)
-_REACHES = (1.0, 1.5, 2.5)
+_DISTANCE_MARGIN = 0.05
+_WAY_OUT_TURNS = (0.0, *(side * step * pi / 12.0 for step in range(1, 12) for side in (1.0, -1.0)), pi)
+_WAY_OUT_REACHES = (1.0, 1.5, 2.5)
 """The ways out that are tried: turn from the direction straight away, and factor on the distance."""
 
-_DETOUR = 0.2
+_DETOUR_COST = 0.2
 """Gap to the ball that a way out has to gain for each metre of additional length."""
 
 
@@ -52,7 +52,7 @@ class KeepDistance(Skill):
     def on_running(self) -> Status:
         """Drive straight away from the place that is too near."""
         frame, me, game = self.frame, self.me, self.frame.game
-        keep = self.distance + ROBOT_RADIUS + _MARGIN
+        keep = self.distance + ROBOT_RADIUS + _DISTANCE_MARGIN
         ball = frame.ball.position
         spot = ball if game.placement is None or game.in_play else game.placement
         ways = [(spot, spot), (ball, ball)]
@@ -66,7 +66,7 @@ class KeepDistance(Skill):
         way = near[0]
         if self._refuge is None or segment_distance(self._refuge, *way) < keep:
             # The target is farther than needed, so that the robot does not creep up to the limit.
-            self._refuge = way_out(frame, me, way, keep + 2.0 * _MARGIN, goalkeeper=self.goalkeeper)
+            self._refuge = way_out(frame, me, way, keep + 2.0 * _DISTANCE_MARGIN, goalkeeper=self.goalkeeper)
         place = closest_point_on_segment(me.position, *way)
         self.drive_to(self._refuge, place, goalkeeper=self.goalkeeper, thereabouts=True)
         return self.run("clearing the ball")
@@ -85,8 +85,8 @@ def way_out(
     away = direction(place, me.position)
     best: Point = (0.0, 0.0)
     most = -inf
-    for far in _REACHES:
-        for turn in _TURNS:
+    for far in _WAY_OUT_REACHES:
+        for turn in _WAY_OUT_TURNS:
             angle = away + turn
             target = (place[0] + far * reach * cos(angle), place[1] + far * reach * sin(angle))
             if segment_distance(target, *way) < reach - 1e-9:
@@ -95,7 +95,7 @@ def way_out(
                 continue
             if turn == 0.0:
                 return target
-            gain = segments_distance(me.position, target, *way) - _DETOUR * distance(me.position, target)
+            gain = segments_distance(me.position, target, *way) - _DETOUR_COST * distance(me.position, target)
             if gain > most:
                 best, most = target, gain
     return best

@@ -18,19 +18,19 @@ from robobt.world.geometry import Point, direction, distance
 from robobt.world.rules import STOP_DISTANCE, has_ball
 from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS
 
-_PULL_SPEED = 1.0
+_PLACING_SPEED = 1.0
 """Speed when driving backwards with the ball: 8 m take 10 s of the 30 s that the rules allow [m/s]."""
 
-_HELD = ROBOT_RADIUS
+_BALL_IN_MOUTH_DISTANCE = ROBOT_RADIUS
 """Distance from the robot's centre to the centre of a ball in its mouth [m]."""
 
-_PLACED, _STILL_PLACED = 0.06, 0.12
+_LET_GO_DISTANCE, _TAKE_AGAIN_DISTANCE = 0.06, 0.12
 """Distances to the spot at which the ball is released and taken again [m]; the rules ask for 0.15 m."""
 
-_REST = 0.1
+_STANDSTILL_SPEED = 0.1
 """A ball or robot slower than this is at rest [m/s]."""
 
-_OFF = 0.25
+_FREE_TURN_DISTANCE = 0.25
 """Distance from which a robot can turn without touching the ball [m]."""
 
 _AT_WALL = 0.05
@@ -39,13 +39,13 @@ _AT_WALL = 0.05
 _CLEAR_OF_WALL = 0.1
 """Distance inside the lines from which the ball counts as free [m]."""
 
-_IN_MOUTH = 0.12
+_GOAL_MOUTH_DEPTH = 0.12
 """A ball in the goal mouth this close to the goal line is first pulled straight out past the posts [m]."""
 
 _BESIDE_GOAL = 0.25
 """A ball behind the goal line this near to a goal counts as in the corner beside it [m]."""
 
-_CLEAR = STOP_DISTANCE + ROBOT_RADIUS + BALL_RADIUS + 0.1
+_PLACED_BALL_DISTANCE = STOP_DISTANCE + ROBOT_RADIUS + BALL_RADIUS + 0.1
 
 
 @skill
@@ -80,40 +80,43 @@ class PlaceBall(DrivingSkill):
         if spot is None:
             return self.run("the referee has named no spot")
         gap = distance(ball.position, spot)
-        if gap > (_STILL_PLACED if self._there else _PLACED):
+        if gap > (_TAKE_AGAIN_DISTANCE if self._there else _LET_GO_DISTANCE):
             self._there = self._let_go = False
             self._refuge = None
             goal = self._via(spot)
             outwards = direction(goal, ball.position)
-            place = (goal[0] - _HELD * cos(outwards), goal[1] - _HELD * sin(outwards))
+            place = (
+                goal[0] - _BALL_IN_MOUTH_DISTANCE * cos(outwards),
+                goal[1] - _BALL_IN_MOUTH_DISTANCE * sin(outwards),
+            )
             self.store.command, doing = pull(
                 frame,
                 me,
                 has_ball(me, ball),
                 place,
                 self.drive_limits,
-                _PULL_SPEED,
+                _PLACING_SPEED,
                 placing=True,
                 sketch=self.draw,
             )
             return self.run(doing)
         self._there = True
-        if not self._let_go and has_ball(me, ball) and hypot(me.vx, me.vy) > _REST:
+        if not self._let_go and has_ball(me, ball) and hypot(me.vx, me.vy) > _STANDSTILL_SPEED:
             self.store.command = RobotCommand(dribbler=True)
             return self.run("stopping with it")
         self._let_go = True
         gap = distance(me.position, ball.position)
-        if gap >= _CLEAR:
+        if gap >= _PLACED_BALL_DISTANCE:
             return self.run("clear of it")
-        if gap < _OFF:
+        if gap < _FREE_TURN_DISTANCE:
             # Drive straight back at once: a robot that turns or creeps drags the ball along.
             away = direction(ball.position, me.position)
-            place = (ball.x + _CLEAR * cos(away), ball.y + _CLEAR * sin(away))
+            place = (ball.x + _PLACED_BALL_DISTANCE * cos(away), ball.y + _PLACED_BALL_DISTANCE * sin(away))
             self.store.command = drive(me, place, me.heading, me.limits, frame.period)
         else:
             # Keep one way out, because near a wall there are two of equal length.
             if self._refuge is None:
-                self._refuge = way_out(frame, me, (ball.position, ball.position), _CLEAR * 1.1)
+                self._refuge = way_out(frame, me, (ball.position, ball.position), _PLACED_BALL_DISTANCE * 1.1)
             self.store.command = travel(
                 frame, me, self._refuge, me.heading, me.limits, avoid_ball=True, sketch=self.draw
             )
@@ -124,7 +127,7 @@ class PlaceBall(DrivingSkill):
         lines, (x, y) = self.frame.field, self.ball.position
         slack = _CLEAR_OF_WALL if self._inwards else 0.0
         in_mouth = abs(y) < lines.goal_width / 2
-        most_x = lines.half_length + (-_IN_MOUTH if in_mouth else _AT_WALL) - slack
+        most_x = lines.half_length + (-_GOAL_MOUTH_DEPTH if in_mouth else _AT_WALL) - slack
         most_y = lines.half_width + _AT_WALL - slack
         self._inwards = abs(x) > most_x or abs(y) > most_y
         if not self._inwards:
@@ -132,7 +135,7 @@ class PlaceBall(DrivingSkill):
         inside_x, inside_y = lines.half_length - _CLEAR_OF_WALL, lines.half_width - _CLEAR_OF_WALL
         if in_mouth:
             # Pull it out of the goal, past the posts.
-            inside_x -= _IN_MOUTH + _CLEAR_OF_WALL
+            inside_x -= _GOAL_MOUTH_DEPTH + _CLEAR_OF_WALL
             inside_y = lines.goal_width / 2 - ROBOT_RADIUS - _CLEAR_OF_WALL
         elif abs(x) > lines.half_length and abs(y) < lines.goal_width / 2 + _BESIDE_GOAL:
             # Pull it at an angle from beside the goal, whose wall leaves no room for the robot straight

@@ -16,8 +16,8 @@ from robobt.world.state import BALL_RADIUS, Frame, RobotState
 RADIUS = 0.1
 """The robot radius in RoboBulls' constants [m]; real robots have 0.09 m."""
 
-_BORDER = 0.1
-_STEP = 0.02
+_FIELD_BORDER = 0.1
+_PATH_STEP = 0.02
 _MOST_TURNS = 4
 _BALL_HIT = RADIUS + BALL_RADIUS + 0.01
 _BALL_FREE = RADIUS + BALL_RADIUS + 0.05
@@ -47,8 +47,8 @@ def first_waypoint(frame: Frame, me: RobotState, goal: Point, *, goalkeeper: boo
 def allowed(field: FieldGeometry, point: Point, *, goalkeeper: bool = False) -> Point:
     """Move the point to where a robot may go: 0.1 m inside the lines and out of the defence areas [m]."""
     x, y = point
-    x = min(max(x, _BORDER - field.half_length), field.half_length - _BORDER)
-    y = min(max(y, _BORDER - field.half_width), field.half_width - _BORDER)
+    x = min(max(x, _FIELD_BORDER - field.half_length), field.half_length - _FIELD_BORDER)
+    y = min(max(y, _FIELD_BORDER - field.half_width), field.half_width - _FIELD_BORDER)
     if goalkeeper and x <= 0.0:
         return (x, y)
     sign = 1.0 if x > 0.0 else -1.0
@@ -73,7 +73,7 @@ def _in_the_way(start: Point, end: Point, ball: Point, others: list[Point]) -> P
 
 def _beside(frame: Frame, start: Point, end: Point, obstacle: Point, others: list[Point]) -> Point | None:
     length = distance(start, end)
-    if length < _STEP:
+    if length < _PATH_STEP:
         return None
     foot = closest_point_on_segment(obstacle, start, end)
     (start_x, start_y), (end_x, end_y) = start, end
@@ -90,7 +90,7 @@ def _free_point(frame: Frame, foot: Point, side: Point, obstacle: Point, others:
             hypot(x - other_x, y - other_y) > _ROBOT_FREE for other_x, other_y in others
         ):
             return (x, y)
-        x, y = x + _STEP * dx, y + _STEP * dy
+        x, y = x + _PATH_STEP * dx, y + _PATH_STEP * dy
     return None
 
 

@@ -23,26 +23,26 @@ from robobt.world.state import BALL_RADIUS, BallState, RobotState
 ROBOBULLS_KICK_SPEED = 7.5
 """Kick speed that RoboBulls commands for a shot at full power [m/s]."""
 
-_BEHIND = RADIUS + BALL_RADIUS + 0.005
-_TOUCH = RADIUS + BALL_RADIUS
-_HELD = RADIUS + BALL_RADIUS + 0.02
-_HELD_ANGLE = radians(75.0)
+_LINE_UP_DISTANCE = RADIUS + BALL_RADIUS + 0.005
+_CONTACT_DISTANCE = RADIUS + BALL_RADIUS
+_HOLD_DISTANCE = RADIUS + BALL_RADIUS + 0.02
+_HOLD_ANGLE = radians(75.0)
 _POSITION_BOX = 0.1
 _HEADING = radians(5.0)
 _AT_POINT = 0.005
 _BALL_AHEAD = radians(60.0)
 _BALL_STRAIGHT_AHEAD = radians(5.0)
-_CREEP = 0.2
-_LOST = 6 * RADIUS
-_ROLLING = 0.5
+_CREEPING_SHARE = 0.2
+_LOST_BALL_DISTANCE = 6 * RADIUS
+_ROLLING_BALL_LIMIT = 0.5
 
 # "More than n cycles of 30 ms", half a cycle later so that rounding cannot shift it.
-_SETTLED = 5.5 * 0.03
+_LINED_UP_TIME = 5.5 * 0.03
 _LOCKED = 15.5 * 0.03
 _KICKING = 100 * 0.03
 
 
-class Stage(StrEnum):
+class KickStage(StrEnum):
     """The stages of the kick."""
 
     BEHIND = "driving behind the ball"
@@ -83,7 +83,7 @@ class RobobullsKick:
 
     def start(self) -> None:
         """Forget the last kick."""
-        self.stage = Stage.BEHIND
+        self.stage = KickStage.BEHIND
         self._there_for = 0.0
         self._askew_for = 0.0
         self._kicking_for = 0.0
@@ -94,7 +94,7 @@ class RobobullsKick:
         frame, me, ball = store.frame, store.me, store.frame.ball
         period = frame.period
         heading = direction(ball.position, target)
-        behind = _from_ball(ball, heading, -_BEHIND)
+        behind = _from_ball(ball, heading, -_LINE_UP_DISTANCE)
         held = _holds(me, ball)
         at_point = hypot(behind[0] - me.x, behind[1] - me.y) < _AT_POINT
 
@@ -103,7 +103,7 @@ class RobobullsKick:
         if self._askew_for > _LOCKED:
             self._askew_for = 0.0
             self._locked = True
-            self._enter(Stage.BEHIND)
+            self._enter(KickStage.BEHIND)
 
         can_kick = (
             not self._locked
@@ -112,44 +112,44 @@ class RobobullsKick:
             and abs(_off_heading(me, target)) < self.tolerance
         )
 
-        if self.stage is Stage.KICK:
+        if self.stage is KickStage.KICK:
             self._kicking_for += period
-            if not held and ball.speed > _ROLLING:
+            if not held and ball.speed > _ROLLING_BALL_LIMIT:
                 return Status.SUCCESS
             if not held or self._kicking_for > _KICKING:
-                self._enter(Stage.BEHIND)
+                self._enter(KickStage.BEHIND)
 
-        if self.stage is Stage.BEHIND:
+        if self.stage is KickStage.BEHIND:
             goal = allowed(frame.field, behind, goalkeeper=self.goalkeeper)
             via = first_waypoint(frame, me, goal, goalkeeper=self.goalkeeper)
             store.command = self._drive(me, via, heading, period)
             store.command.dribbler = held
             if self._settled(me, goal, heading, period):
                 self._locked = False
-                self._enter(Stage.LINE_UP)
+                self._enter(KickStage.LINE_UP)
             elif can_kick:
-                self._enter(Stage.LINE_UP)
-        elif self.stage is Stage.LINE_UP:
-            goal = _from_ball(ball, heading, -_TOUCH)
+                self._enter(KickStage.LINE_UP)
+        elif self.stage is KickStage.LINE_UP:
+            goal = _from_ball(ball, heading, -_CONTACT_DISTANCE)
             store.command = self._drive(me, goal, heading, period)
             store.command.dribbler = held
             if self._settled(me, goal, heading, period):
-                self._enter(Stage.FORWARD)
+                self._enter(KickStage.FORWARD)
         else:
-            if self.stage is Stage.FORWARD and distance(me.position, ball.position) > _LOST:
-                self._enter(Stage.BEHIND)
-            elif self.stage is Stage.FORWARD and can_kick and held:
-                self._enter(Stage.KICK)
-            beyond = _from_ball(ball, heading, _TOUCH)
-            ahead = (me.x + _CREEP * (beyond[0] - me.x), me.y + _CREEP * (beyond[1] - me.y))
+            if self.stage is KickStage.FORWARD and distance(me.position, ball.position) > _LOST_BALL_DISTANCE:
+                self._enter(KickStage.BEHIND)
+            elif self.stage is KickStage.FORWARD and can_kick and held:
+                self._enter(KickStage.KICK)
+            beyond = _from_ball(ball, heading, _CONTACT_DISTANCE)
+            ahead = (me.x + _CREEPING_SHARE * (beyond[0] - me.x), me.y + _CREEPING_SHARE * (beyond[1] - me.y))
             store.command = self._drive(me, ahead, heading, period)
             store.command.dribbler = True
-            if self.stage is Stage.KICK:
+            if self.stage is KickStage.KICK:
                 store.command.kick_speed = self.kick_speed
                 store.command.kick_trigger = KickTrigger.NOW
         return Status.RUNNING
 
-    def _enter(self, stage: Stage) -> None:
+    def _enter(self, stage: KickStage) -> None:
         self.stage = stage
         self._there_for = 0.0
         self._kicking_for = 0.0
@@ -161,7 +161,7 @@ class RobobullsKick:
             and abs(wrap_angle(heading - me.heading)) < _HEADING
         ):
             self._there_for += period
-        return self._there_for > _SETTLED
+        return self._there_for > _LINED_UP_TIME
 
     def _drive(self, me: RobotState, goal: Point, heading: float, period: float) -> RobotCommand:
         return robobulls_drive(me, goal, heading, period, self.limits)
@@ -176,4 +176,7 @@ def _off_heading(me: RobotState, point: Point) -> float:
 
 
 def _holds(me: RobotState, ball: BallState) -> bool:
-    return hypot(ball.x - me.x, ball.y - me.y) < _HELD and abs(_off_heading(me, ball.position)) < _HELD_ANGLE
+    return (
+        hypot(ball.x - me.x, ball.y - me.y) < _HOLD_DISTANCE
+        and abs(_off_heading(me, ball.position)) < _HOLD_ANGLE
+    )

@@ -15,8 +15,8 @@ from robobt.world.geometry import Point, limit_norm, to_robot_frame, wrap_angle
 from robobt.world.limits import RobotLimits
 from robobt.world.state import RobotState
 
-_THERE = 0.005
-_TURNED = radians(0.5)
+_ARRIVAL_TOLERANCE = 0.005
+_TURN_TOLERANCE = radians(0.5)
 
 
 def robobulls_drive(
@@ -31,13 +31,13 @@ def robobulls_drive(
     Arguments are those of :func:`robobt.motion.pilot.drive`.
     """
     error = wrap_angle(heading - me.heading)
-    rate = min(sqrt(2.0 * limits.angular_braking * max(abs(error) - _TURNED, 0.0)), limits.max_turn)
+    rate = min(sqrt(2.0 * limits.angular_braking * max(abs(error) - _TURN_TOLERANCE, 0.0)), limits.max_turn)
     step = limits.turn_acceleration * period
     omega = min(me.omega + step, max(me.omega - step, rate if error >= 0.0 else -rate))
     omega = min(limits.max_turn, max(-limits.max_turn, omega))
 
     dx, dy = target[0] - me.x, target[1] - me.y
-    left = max(hypot(dx, dy) - _THERE, 0.0)
+    left = max(hypot(dx, dy) - _ARRIVAL_TOLERANCE, 0.0)
     speed = min(sqrt(2.0 * limits.braking * left), limits.max_speed)
     # Turning while driving bends the path, so half of the turn is subtracted in advance.
     course = atan2(dy, dx) - 0.5 * omega * period

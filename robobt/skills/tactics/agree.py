@@ -14,10 +14,10 @@ import numpy as np
 
 from robobt.motion.arrival import arrival_times, meetings
 from robobt.skills.kicker import follow_restart
-from robobt.skills.plan import Plan, Task
+from robobt.skills.plan import Task, TeamPlan
 from robobt.skills.store import Pass, TeamStore
 from robobt.skills.tactics.assignment import assign
-from robobt.skills.tactics.attacker import NOBODY, Candidate, choose_attacker, may_be_attacked
+from robobt.skills.tactics.attacker import NOBODY, AttackerCandidate, choose_attacker, may_be_attacked
 from robobt.skills.tactics.defence import mark_places, threats, wall_places
 from robobt.skills.tactics.support import short_place, support_places
 from robobt.world.compiled import compiled_lean
@@ -28,10 +28,10 @@ from robobt.world.rules import has_ball, owner
 from robobt.world.state import Frame, RobotState
 
 _RASTER = 0.05
-_NO_CANDIDATE = Candidate(inf, 0.0, False)
+_NO_CANDIDATE = AttackerCandidate(inf, 0.0, False)
 
 
-def agree(frame: Frame, team: TeamStore) -> Plan:
+def agree(frame: Frame, team: TeamStore) -> TeamPlan:
     """Bring the team's plan up to this frame, and return it."""
     plan = team.plan
     if plan.frame is frame:
@@ -61,7 +61,7 @@ def pass_under_way(frame: Frame, team: TeamStore) -> bool:
     return frame.ball.speed > 0.4 and owner(frame) is None
 
 
-def _look(frame: Frame, plan: Plan) -> None:
+def _look(frame: Frame, plan: TeamPlan) -> None:
     ball, field = frame.ball, frame.field
     plan.apply_tactics(field, frame.ball_model)
     plan.rolling = plan.watch.rolling_speed(frame)
@@ -89,7 +89,7 @@ def _limit(movers_: FloatArray, most: float) -> None:
         mover.acceleration = min(mover.acceleration, most)
 
 
-def _judge_possession(frame: Frame, team: TeamStore, plan: Plan) -> None:
+def _judge_possession(frame: Frame, team: TeamStore, plan: TeamPlan) -> None:
     holder = owner(frame)
     if holder is not None:
         ours = holder.team is frame.team
@@ -112,7 +112,7 @@ def _judge_possession(frame: Frame, team: TeamStore, plan: Plan) -> None:
         plan.ours, plan.ours_since, plan.turned = ours, frame.time, frame.time
 
 
-def _attacker(frame: Frame, team: TeamStore, plan: Plan) -> int | None:
+def _attacker(frame: Frame, team: TeamStore, plan: TeamPlan) -> int | None:
     ball, game = frame.ball, frame.game
     if game.penalty is frame.team and game.may_touch and team.attacker in plan.own_times:
         return team.attacker
@@ -133,11 +133,11 @@ def _attacker(frame: Frame, team: TeamStore, plan: Plan) -> int | None:
         elif spot is not None:
             # No robot has the ball yet or is beyond it.
             time = distance(spot, robot.position) / 2.0
-            candidates += Candidate(time, ball.x, False)
+            candidates += AttackerCandidate(time, ball.x, False)
         else:
-            candidates += Candidate(plan.own_times[robot.id], robot.x, has_ball(robot, ball))
+            candidates += AttackerCandidate(plan.own_times[robot.id], robot.x, has_ball(robot, ball))
     row = choose_attacker(
-        np.array(candidates, dtype=np.float64).reshape(-1, len(Candidate._fields)),
+        np.array(candidates, dtype=np.float64).reshape(-1, len(AttackerCandidate._fields)),
         ball.x,
         ball.speed,
         NOBODY if meant is None else rows.get(meant, NOBODY),
@@ -149,7 +149,7 @@ def _attacker(frame: Frame, team: TeamStore, plan: Plan) -> int | None:
     return None if row == NOBODY else frame.own[row].id
 
 
-def _meeting(frame: Frame, team: TeamStore, plan: Plan) -> Point | None:
+def _meeting(frame: Frame, team: TeamStore, plan: TeamPlan) -> Point | None:
     """Return where the attacker meets the ball, rounded to a few centimetres so that it seldom changes."""
     if frame.ball.speed < plan.tactics.meeting_from or not frame.game.in_play:
         return None
@@ -160,7 +160,7 @@ def _meeting(frame: Frame, team: TeamStore, plan: Plan) -> Point | None:
     return None
 
 
-class _Job(NamedTuple):
+class _PlacedTask(NamedTuple):
     """A task at a place; ``what`` is the number of the opponent to mark, or the place in the wall."""
 
     task: Task
@@ -168,7 +168,7 @@ class _Job(NamedTuple):
     what: int | None = None
 
 
-def _share_out(frame: Frame, team: TeamStore, plan: Plan, players: list[RobotState]) -> None:
+def _share_out(frame: Frame, team: TeamStore, plan: TeamPlan, players: list[RobotState]) -> None:
     """Give every player except the attacker a task and a place."""
     if abs(frame.ball.x) > plan.tactics.ahead_from:
         plan.ahead = frame.ball.x > 0.0
@@ -187,7 +187,7 @@ def _share_out(frame: Frame, team: TeamStore, plan: Plan, players: list[RobotSta
     plan.marks = team.marks = marks
 
 
-def _meant(frame: Frame, team: TeamStore, plan: Plan) -> dict[int, Task]:
+def _meant(frame: Frame, team: TeamStore, plan: TeamPlan) -> dict[int, Task]:
     """Send the intended receivers to where they will get their passes."""
     tasks: dict[int, Task] = {}
     intended = plan.next_pass
@@ -205,33 +205,35 @@ def _meant(frame: Frame, team: TeamStore, plan: Plan) -> dict[int, Task]:
     return tasks
 
 
-def _jobs(frame: Frame, team: TeamStore, plan: Plan, players: int, free: int) -> list[_Job]:
+def _jobs(frame: Frame, team: TeamStore, plan: TeamPlan, players: int, free: int) -> list[_PlacedTask]:
     """Return the tasks for ``free`` of the players, the most urgent first."""
     tactics = plan.tactics
     walls = 0 if plan.without == "wall" else wall_size(plan, players, free)
-    jobs = [_Job(Task.WALL, place, index) for index, place in enumerate(wall_places(frame, walls, tactics))]
+    jobs = [
+        _PlacedTask(Task.WALL, place, index) for index, place in enumerate(wall_places(frame, walls, tactics))
+    ]
     plan.short = None if plan.without == "short_place" else short_place(frame, plan.short, tactics)
     if (
         plan.short is not None
         and free > len(jobs)
         and not _near(plan.next_pass, plan.short, tactics.same_place)
     ):
-        jobs.append(_Job(Task.SUPPORT, plan.short))
+        jobs.append(_PlacedTask(Task.SUPPORT, plan.short))
     left = free - len(jobs)
     if left and not plan.ours and plan.without != "marks":
         dangerous = threats(frame, tactics, set(plan.marks.values()))
         team.threats = [robot.id for robot in dangerous]
         marks = mark_places(frame, dangerous[: left - 1 if plan.ahead else left], tactics)
-        jobs += [_Job(Task.MARK, place, number) for number, place in marks]
+        jobs += [_PlacedTask(Task.MARK, place, number) for number, place in marks]
         left = free - len(jobs)
     if left:
-        jobs += [_Job(Task.SUPPORT, place) for place in support_places(frame, team, plan, left)]
+        jobs += [_PlacedTask(Task.SUPPORT, place) for place in support_places(frame, team, plan, left)]
     return jobs
 
 
 def _hand_out(
-    frame: Frame, plan: Plan, free: list[RobotState], jobs: list[_Job]
-) -> Iterator[tuple[RobotState, _Job]]:
+    frame: Frame, plan: TeamPlan, free: list[RobotState], jobs: list[_PlacedTask]
+) -> Iterator[tuple[RobotState, _PlacedTask]]:
     """Yield the assignment of tasks with the least cost; a player's previous task is preferred."""
     if not jobs:
         return
@@ -253,7 +255,7 @@ def _near(intended: Pass | None, place: Point, gap: float) -> bool:
     return intended is not None and distance(intended.target, place) < gap
 
 
-def wall_size(plan: Plan, players: int, free: int) -> int:
+def wall_size(plan: TeamPlan, players: int, free: int) -> int:
     """Return how many robots cover the goal, from the number of players and of free players."""
     most = 1 if players <= 2 else 2 if players <= 6 else 3
     if plan.ours and plan.ahead:

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from robobt.world.compiled import FloatArray, compiled
 
-_NOBODY = -1
+_UNASSIGNED = -1
 
 
 def assign(cost: FloatArray) -> list[tuple[int, int]]:
@@ -34,32 +34,32 @@ def _columns(cost: FloatArray) -> NDArray[np.int64]:
     """
     rows, columns = cost.shape
     row_price, column_price = np.zeros(rows), np.zeros(columns)
-    row_of = np.full(columns, _NOBODY)
-    column_of = np.full(rows, _NOBODY)
+    row_of = np.full(columns, _UNASSIGNED)
+    column_of = np.full(rows, _UNASSIGNED)
     for begin in range(rows):
         reached = np.full(columns, np.inf)
         from_row = np.full(columns, begin)
         settled = np.zeros(columns, dtype=np.bool_)
-        row, length, end = begin, 0.0, _NOBODY
-        while end == _NOBODY:
-            nearest = _NOBODY
+        row, length, end = begin, 0.0, _UNASSIGNED
+        while end == _UNASSIGNED:
+            nearest = _UNASSIGNED
             for column in range(columns):
                 if settled[column]:
                     continue
                 way = length + cost[row, column] - row_price[row] - column_price[column]
                 if way < reached[column]:
                     reached[column], from_row[column] = way, row
-                if nearest == _NOBODY or reached[column] < reached[nearest]:
+                if nearest == _UNASSIGNED or reached[column] < reached[nearest]:
                     nearest = column
             length = reached[nearest]
             settled[nearest] = True
-            if row_of[nearest] == _NOBODY:
+            if row_of[nearest] == _UNASSIGNED:
                 end = nearest
             else:
                 row = row_of[nearest]
         row_price[begin] += length
         for column in range(columns):
-            if settled[column] and row_of[column] != _NOBODY:
+            if settled[column] and row_of[column] != _UNASSIGNED:
                 row_price[row_of[column]] += length - reached[column]
             if settled[column]:
                 column_price[column] -= length - reached[column]

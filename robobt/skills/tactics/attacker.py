@@ -12,7 +12,7 @@ from robobt.world.rules import in_area
 NOBODY = -1
 
 
-class Candidate(NamedTuple):
+class AttackerCandidate(NamedTuple):
     """A robot that may go for the ball.
 
     Attributes:
@@ -26,8 +26,8 @@ class Candidate(NamedTuple):
     has_ball: float
 
 
-CANDIDATE = record_dtype(Candidate)
-"""The record of a :class:`Candidate`."""
+ATTACKER_CANDIDATE = record_dtype(AttackerCandidate)
+"""The record of a :class:`AttackerCandidate`."""
 
 
 @compiled
@@ -53,7 +53,7 @@ def choose_attacker(
     """Return who goes for the ball: the soonest robot, unless the previous attacker is hardly later.
 
     Args:
-        candidates: (n, 3) :data:`CANDIDATE` of the team's robots.
+        candidates: (n, 3) :data:`ATTACKER_CANDIDATE` of the team's robots.
         ball_x: x of the ball [m].
         ball_speed: its speed [m/s].
         meant: row of the receiver of a pass under way, :data:`NOBODY` without one.
@@ -68,7 +68,7 @@ def choose_attacker(
     tactics: AppliedTactics = numbers.view(TACTICS)[0]
     best, least, present = NOBODY, inf, inf
     for row in range(len(candidates)):
-        candidate: Candidate = candidates[row].view(CANDIDATE)[0]
+        candidate: AttackerCandidate = candidates[row].view(ATTACKER_CANDIDATE)[0]
         time = candidate.time
         if time == inf:
             continue

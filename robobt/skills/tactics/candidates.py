@@ -56,7 +56,7 @@ class _Rated(Protocol):
 
 _RATED = record_dtype(_Rated)
 
-_TAKEN, _SENT_ON, _CHIPPED = 0, 1, 2
+_TAKEN_PASS, _SENT_ON_PASS, _CHIPPED_PASS = 0, 1, 2
 """Kinds of passes: along the ground, by what the receiver does with it, or chipped."""
 
 _RINGS = ((0.0, 1), (0.35, 6), (0.8, 8))
@@ -169,16 +169,16 @@ def _rate(
         turn = abs((turn + pi) % (2.0 * pi) - pi)
         delay = 0.1 + turn / tactics.turn_rate
         there = time_to(own[i], x, y, 0.1)
-        for kind in (_TAKEN, _SENT_ON, _CHIPPED):
+        for kind in (_TAKEN_PASS, _SENT_ON_PASS, _CHIPPED_PASS):
             ready = there
-            if kind == _SENT_ON:
+            if kind == _SENT_ON_PASS:
                 if (
                     length < tactics.shortest_redirect
                     or redirect_angle(ox, oy, x, y, tactics.half_length) > allowed.widest
                 ):
                     continue
                 ready += tactics.redirect_turn
-            if kind == _CHIPPED:
+            if kind == _CHIPPED_PASS:
                 if (
                     not allowed.chips
                     or not tactics.shortest <= length <= tactics.longest_chip
@@ -189,7 +189,7 @@ def _rate(
                 flight = chip_time(length, tactics)
             else:
                 slow = min(tactics.receive_speed, 0.8 + 0.4 * length)
-                arrival = tactics.redirect_speed if kind == _SENT_ON else slow
+                arrival = tactics.redirect_speed if kind == _SENT_ON_PASS else slow
                 speed = kick_speed(length, arrival, tactics)
                 flight = flight_time(length, speed, tactics)
             wait = delay
@@ -198,19 +198,19 @@ def _rate(
                 wait = ready - flight
                 if wait > tactics.longest_wait:
                     continue
-            if kind == _CHIPPED:
+            if kind == _CHIPPED_PASS:
                 chance = chip_chance(ox, oy, x, y, wait, opponents, own, i, tactics)
             else:
                 chance = arrive_chance(ox, oy, x, y, speed, wait, opponents, own, i, tactics)
             if chance < allowed.least:
                 continue
             worth = point_worth(ox, oy, x, y, wait + flight, opponents, tactics)
-            if kind == _SENT_ON and worth < tactics.redirect_worth:
+            if kind == _SENT_ON_PASS and worth < tactics.redirect_worth:
                 continue
             score = chance * worth * max(0.3, 1.0 - 0.25 * wait)
             if score > best.score:
                 best.score, best.speed, best.wait = score, speed, max(0.0, ready - flight)
-                best.chip = 1.0 if kind == _CHIPPED else 0.0
+                best.chip = 1.0 if kind == _CHIPPED_PASS else 0.0
     return rated
 
 

@@ -23,10 +23,8 @@ from robobt.skills.tactics.lanes import (
 from robobt.skills.tactics_settings import TACTICS, AppliedTactics
 from robobt.world.compiled import compiled, records
 from robobt.world.geometry import FloatArray, Point
-from robobt.world.records import MOVER_SIZE, PLACE, Mover, Place, mover_records
-from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS
-
-_BODY = ROBOT_RADIUS + BALL_RADIUS
+from robobt.world.records import FIELD_PLACE, MOVER_SIZE, Mover, Place, mover_records
+from robobt.world.state import TOUCH_DISTANCE
 
 _AIMS = 13
 
@@ -74,7 +72,7 @@ def _between(
     x: float, y: float, delay: float, opponents: Sequence[Mover], tactics: AppliedTactics
 ) -> Sequence[Place]:
     """Return opponents' positions at the kick; those near their goal move between its middle and (x, y)."""
-    where: Sequence[Place] = records(len(opponents), PLACE)
+    where: Sequence[Place] = records(len(opponents), FIELD_PLACE)
     goal_x = tactics.half_length
     gx, gy = goal_x - x, -y
     to_goal = hypot(gx, gy)
@@ -117,7 +115,7 @@ def _room(
     least = (half_goal - abs(aim)) * dx / length
     for j, opponent in enumerate(opponents):
         along = (where[j].x - x) * ux + (where[j].y - y) * uy
-        if along < -_BODY or along > length + _BODY:
+        if along < -TOUCH_DISTANCE or along > length + TOUCH_DISTANCE:
             continue
         time = min(max(along, 0.0), length) / tactics.shot_speed
         # The opponent keeps its velocity, with less certainty later on.
@@ -126,10 +124,10 @@ def _room(
         aside = abs((px - x) * uy - (py - y) * ux)
         # Goalkeepers see a robot aim; most robots are too far away even with that.
         free = max(0.0, time - 0.1 + tactics.sees)
-        gap = aside - _BODY - 0.5 * opponent.acceleration * free * free
+        gap = aside - TOUCH_DISTANCE - 0.5 * opponent.acceleration * free * free
         if gap < least and hypot(goal_x - px, py) >= tactics.keeps:
             free = max(0.0, time - 0.1)
-            gap = aside - _BODY - 0.5 * opponent.acceleration * free * free
+            gap = aside - TOUCH_DISTANCE - 0.5 * opponent.acceleration * free * free
         if gap < least:
             least = gap
             if least < -0.3:

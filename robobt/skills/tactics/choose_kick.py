@@ -15,7 +15,7 @@ from robobt.skills.tactics.chances import worth_at
 from robobt.tree import Status
 from robobt.world.rules import has_ball
 
-_SHOWN = 5
+_SHOWN_PASSES = 5
 """Number of candidate passes that are shown."""
 
 
@@ -130,7 +130,7 @@ class ChooseKick(Skill):
         late = self.restart and frame.time - self._since > self.patience + tactics.late
         least = 0.0 if late else self.least
         candidates = passes(frame, team, me, old_pass, self.keep, least=least, chips=self.chips)
-        self.store.candidates = candidates[:_SHOWN]
+        self.store.candidates = candidates[:_SHOWN_PASSES]
         best = candidates[0] if candidates else None
         shot_score = 0.0 if shot is None else shot.score
         pass_score = 0.0 if best is None else best.score

@@ -10,13 +10,11 @@ from robobt.world import ball_model
 from robobt.world.ball_model import time_for
 from robobt.world.compiled import compiled
 from robobt.world.records import Mover
-from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS
+from robobt.world.state import TOUCH_DISTANCE
 
 _CHIP_SAMPLES = 4
 
-_BODY = ROBOT_RADIUS + BALL_RADIUS
-
-_SAMPLES = 8
+_LANE_SAMPLES = 8
 
 
 @compiled
@@ -40,10 +38,10 @@ def time_to_pass(robot: Mover, x: float, y: float, tactics: AppliedTactics) -> f
     py = robot.y + tactics.reaction * robot.vy
     dx, dy = x - px, y - py
     gap = hypot(dx, dy)
-    if gap <= _BODY:
+    if gap <= TOUCH_DISTANCE:
         return 0.0
     towards = (dx * robot.vx + dy * robot.vy) / gap
-    gap -= _BODY
+    gap -= TOUCH_DISTANCE
     acceleration = robot.acceleration
     needed = (sqrt(towards * towards + 2.0 * acceleration * gap) - towards) / acceleration
     return float(max(needed, gap / robot.max_speed) + tactics.reaction)
@@ -54,7 +52,7 @@ def cannot_pass_by(robot: Mover, x: float, y: float, time: float, tactics: Appli
     """Return whether :func:`time_to_pass` is certainly above ``time`` [s], without computing roots."""
     free = max(0.0, time - tactics.reaction)
     fastest = abs(robot.vx) + abs(robot.vy) + 0.5 * robot.acceleration * free
-    reach = _BODY + min(robot.max_speed, fastest) * free
+    reach = TOUCH_DISTANCE + min(robot.max_speed, fastest) * free
     dx, dy = x - robot.x - tactics.reaction * robot.vx, y - robot.y - tactics.reaction * robot.vy
     return bool(dx * dx + dy * dy > reach * reach + 1e-6)
 
@@ -77,8 +75,8 @@ def lane_margin(
     dx, dy = x - ox, y - oy
     length = hypot(dx, dy)
     least = 10.0
-    for k in range(1, _SAMPLES + 1):
-        share = k / _SAMPLES
+    for k in range(1, _LANE_SAMPLES + 1):
+        share = k / _LANE_SAMPLES
         when = delay + flight_time(share * length, speed, tactics)
         px, py = ox + share * dx, oy + share * dy
         for robot in robots:
@@ -92,7 +90,7 @@ def lane_margin(
         along = ((robot.x - ox) * dx + (robot.y - oy) * dy) / max(length, 1e-6)
         if 0.0 < along < length:
             aside = abs((robot.x - ox) * dy - (robot.y - oy) * dx) / max(length, 1e-6)
-            if aside < _BODY + 0.03:
+            if aside < TOUCH_DISTANCE + 0.03:
                 least = min(least, -0.3)
     return least
 
@@ -129,9 +127,9 @@ def arrive_chance(
         if i == skip:
             continue
         along = ((mate.x - ox) * dx + (mate.y - oy) * dy) / length
-        if _BODY < along < length:
+        if TOUCH_DISTANCE < along < length:
             aside = abs((mate.x - ox) * dy - (mate.y - oy) * dx) / length
-            if aside < _BODY + 0.02:
+            if aside < TOUCH_DISTANCE + 0.02:
                 chance *= 0.1
     return chance
 
@@ -186,7 +184,7 @@ def chip_chance(
             continue
         mx, my = mate.x - ox, mate.y - oy
         along, aside = mx * ux + my * uy, abs(mx * uy - my * ux)
-        down = lands - tactics.chip_falls - _BODY < along < length and aside < _BODY + 0.02
+        down = lands - tactics.chip_falls - TOUCH_DISTANCE < along < length and aside < TOUCH_DISTANCE + 0.02
         if down or _in_chips_way(mx, my, ux, uy, 0.02, tactics):
             chance *= 0.1
     return chance
@@ -196,4 +194,7 @@ def chip_chance(
 def _in_chips_way(dx: float, dy: float, ux: float, uy: float, gap: float, tactics: AppliedTactics) -> bool:
     """Return whether a robot at (dx, dy) from the kick stands where a chip along (ux, uy) is still low."""
     along = dx * ux + dy * uy
-    return 0.0 < along < tactics.chip_rises + _BODY + gap and abs(dx * uy - dy * ux) < _BODY + gap
+    return (
+        0.0 < along < tactics.chip_rises + TOUCH_DISTANCE + gap
+        and abs(dx * uy - dy * ux) < TOUCH_DISTANCE + gap
+    )

@@ -7,7 +7,7 @@ from math import inf
 
 import numpy as np
 
-from robobt.skills.plan import Plan
+from robobt.skills.plan import TeamPlan
 from robobt.skills.store import TeamStore
 from robobt.skills.tactics.chances import rate_points
 from robobt.skills.tactics_settings import TacticsSettings
@@ -22,7 +22,7 @@ _SHORT_ANGLES = 16
 _ALL_ROOM = 10.0
 
 
-def support_places(frame: Frame, team: TeamStore, plan: Plan, count: int) -> list[Point]:
+def support_places(frame: Frame, team: TeamStore, plan: TeamPlan, count: int) -> list[Point]:
     """Return ``count`` places for supporters, the best first."""
     tactics = plan.tactics
     if len(plan.support) >= count and 0.0 <= frame.time - plan.support_time < tactics.support_every:

@@ -11,7 +11,7 @@ from robobt.skills.base import skill
 from robobt.skills.team.field_search import FieldSearch
 from robobt.skills.team.position_grid import GridArray, PositionGrid
 
-_WIDEST = radians(85.0)
+_WIDEST_DRIBBLE_ANGLE = radians(85.0)
 
 
 @skill
@@ -40,7 +40,9 @@ class BestFieldPosition(FieldSearch):
 
     def value(self, grid: PositionGrid) -> GridArray:
         """Rate the points as the class describes."""
-        value = static_value(grid, _WIDEST) - self.travel * grid.distance_from(self.ball.position)
+        value = static_value(grid, _WIDEST_DRIBBLE_ANGLE) - self.travel * grid.distance_from(
+            self.ball.position
+        )
         for rows, hidden in grid.goal_hidden(self.frame.opponents, extra=0.1):
             value[rows][hidden] -= 10.0
         return value

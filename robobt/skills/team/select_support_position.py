@@ -11,7 +11,7 @@ from robobt.skills.team.best_field_position import static_value
 from robobt.skills.team.field_search import FieldSearch
 from robobt.skills.team.position_grid import GridArray, PositionGrid, lane_shadow, shot_path
 
-_WIDEST = radians(70.0)
+_WIDEST_SUPPORT_ANGLE = radians(70.0)
 
 
 @skill
@@ -55,7 +55,7 @@ class SelectSupportPosition(FieldSearch):
     def value(self, grid: PositionGrid) -> GridArray:
         """Rate the points as the class describes."""
         frame, me, ball = self.frame, self.me, self.ball.position
-        value = static_value(grid, _WIDEST) - self.travel * grid.distance_from(me.position)
+        value = static_value(grid, _WIDEST_SUPPORT_ANGLE) - self.travel * grid.distance_from(me.position)
         regions = [lane_shadow(ball, opponent, self.lane_clearance) for opponent in frame.opponents]
         regions.append(shot_path(frame.field, ball, self.shot_room))
         faults = grid.count_regions(regions)

@@ -48,7 +48,7 @@ def lint_tree(root: Behaviour) -> list[Finding]:
     return [
         Finding(node_path(node), rule, message)
         for node in preorder(root)
-        for rule, check in _RULES.items()
+        for rule, check in _LINT_RULES.items()
         for message in check(node)
     ]
 
@@ -79,7 +79,7 @@ def _shared_blackboard(node: Behaviour) -> Iterator[str]:
         yield "is on py_trees' blackboard, which all robots of the process share; take the store"
 
 
-_RULES: dict[str, Callable[[Behaviour], Iterator[str]]] = {
+_LINT_RULES: dict[str, Callable[[Behaviour], Iterator[str]]] = {
     "unbounded": _unbounded,
     "wall-clock": _wall_clock,
     "global-random": _global_random,

@@ -13,7 +13,7 @@ from py_trees.common import ParallelPolicy, Status
 from py_trees.composites import Composite, Parallel
 from py_trees.decorators import Decorator
 
-from robobt.config.yaml import MAX_BYTES, Marked, Scalar, parse_marked, read_limited
+from robobt.config.yaml import MAX_YAML_BYTES, Marked, Scalar, parse_marked, read_limited
 from robobt.tree.interop.model import TreeFileError
 from robobt.tree.walk import node_path
 
@@ -70,7 +70,7 @@ def read_substitutions(path: str | Path) -> list[Substitution]:
         "*/HasBall": {script: [FAILURE, SUCCESS]}
     """
     source = str(path)
-    content = read_limited(Path(path), MAX_BYTES, TreeFileError)
+    content = read_limited(Path(path), MAX_YAML_BYTES, TreeFileError)
     return _rules(parse_marked(content, source, TreeFileError), source)
 
 

@@ -67,7 +67,7 @@ def register(
 
     ``make`` makes the closures of such a node; for ``followed`` and ``reach`` see :class:`Known`.
     """
-    _KNOWN.append(Known(cls.tick, cls.stop, make, followed, reach))
+    _KNOWN_NODES.append(Known(cls.tick, cls.stop, make, followed, reach))
 
 
 def known_as(node: Behaviour) -> Known:
@@ -75,7 +75,7 @@ def known_as(node: Behaviour) -> Known:
     cls = type(node)
     if not (has_method_of(cls, node, "tick") and has_method_of(cls, node, "stop")):
         return AS_IT_IS
-    for known in _KNOWN:
+    for known in _KNOWN_NODES:
         if cls.tick is known.tick and cls.stop is known.stop:
             return known
     return _AS_IT_BRINGS if _brings_closures(cls) else AS_IT_IS
@@ -104,6 +104,6 @@ def _as_it_is(node: Behaviour, visit: Visit | None) -> tuple[Tick, Stop]:
     return tick, stop
 
 
-_KNOWN: list[Known] = []
+_KNOWN_NODES: list[Known] = []
 AS_IT_IS = Known(None, None, _as_it_is)
 _AS_IT_BRINGS = Known(None, None, lambda node, visit: cast(BringsClosures, node).closures(visit))

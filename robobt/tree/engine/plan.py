@@ -25,7 +25,7 @@ from robobt.tree.engine.dispatch import AS_IT_IS, compile_node, known_as
 from robobt.tree.engine.leaves import leaf_closures, lifecycle
 
 
-class Step:
+class PlanStep:
     """One child in a composite's plan.
 
     Attributes:
@@ -51,7 +51,7 @@ class Step:
                 self.update = update if marks is None else marks.watched(child, update)
 
 
-Plan: TypeAlias = list[Step]
+Plan: TypeAlias = list[PlanStep]
 
 
 def _until(child: Behaviour, visit: Visit | None, ends: tuple[Status, ...], otherwise: Status) -> Tick:
@@ -106,5 +106,5 @@ def replan(node: Composite, visit: Visit | None, children: list[Behaviour], plan
         visit.change()
     now = list(node.children)
     # Before anything is changed: where it raises, the next tick has to find that the children are others.
-    plan[:] = [known.get(child.id) or Step(child, visit, node) for child in now]
+    plan[:] = [known.get(child.id) or PlanStep(child, visit, node) for child in now]
     children[:] = now

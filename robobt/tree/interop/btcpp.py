@@ -141,7 +141,16 @@ NODE_TAGS = ("Action", "Condition", "Control", "Decorator")
 METADATA = ("_uid", "_fullpath", "_collapsed", "_description")
 """Attributes that BehaviorTree.CPP and Groot2 write for themselves; read over, not kept."""
 
-SCRIPTS = ("_skipIf", "_successIf", "_failureIf", "_while", "_onSuccess", "_onFailure", "_onHalted", "_post")
+SCRIPT_ATTRIBUTES = (
+    "_skipIf",
+    "_successIf",
+    "_failureIf",
+    "_while",
+    "_onSuccess",
+    "_onFailure",
+    "_onHalted",
+    "_post",
+)
 """Attributes with scripts."""
 
 

@@ -9,7 +9,7 @@ from typing import Any
 
 from robobt.tree.parameters import say_hint
 
-_WORDS: dict[str, Any] = {
+_TYPE_WORDS: dict[str, Any] = {
     "bool": bool,
     "int": int,
     "float": float,
@@ -21,7 +21,7 @@ _WORDS: dict[str, Any] = {
 
 def hint_of(words: str, more: Mapping[str, Any]) -> Any:
     """Return the type that words such as ``float | none`` stand for, ``more`` of them known besides ours."""
-    known = {**_WORDS, **more}
+    known = {**_TYPE_WORDS, **more}
     members = [word.strip() for word in words.split("|")]
     for word in members:
         if word not in known:
@@ -32,7 +32,7 @@ def hint_of(words: str, more: Mapping[str, Any]) -> Any:
 def words_of_default(default: object) -> str:
     """Return the words for the type of a default."""
     for word in ("bool", "int", "float", "str"):
-        if type(default) is _WORDS[word]:
+        if type(default) is _TYPE_WORDS[word]:
             return word
     if isinstance(default, list) and len(default) == 2 and {type(part) for part in default} <= {int, float}:
         return "point"

@@ -12,7 +12,7 @@ from robobt.config.yaml import read_limited
 from robobt.tree.interop.build import build_tree
 from robobt.tree.interop.model import Name, Text, TreeFile, TreeFileError, specs_of
 from robobt.tree.interop.vocabulary import Vocabulary
-from robobt.tree.interop.xml_elements import MAX_BYTES, read_element
+from robobt.tree.interop.xml_elements import MAX_XML_BYTES, read_element
 from robobt.tree.interop.xml_reader import parse_xml
 from robobt.tree.interop.yaml import parse_yaml
 
@@ -71,7 +71,7 @@ def load_tree_file(path: str | Path, vocabulary: Vocabulary) -> TreeFile:
     path = Path(path)
     if path.suffix not in FILE_ENDINGS:
         raise TreeFileError(str(path), f"its ending is none of {', '.join(FILE_ENDINGS)}")
-    text = read_limited(path, MAX_BYTES, TreeFileError)
+    text = read_limited(path, MAX_XML_BYTES, TreeFileError)
     if path.suffix in (".yaml", ".yml"):
         file = parse_yaml(text, vocabulary, str(path))
     else:
@@ -95,7 +95,7 @@ def tree_files(path: str | Path) -> list[Path]:
     path = Path(path)
     if path.suffix != _PROJECT:
         return [path]
-    parts = read_element(read_limited(path, MAX_BYTES, TreeFileError), str(path)).children
+    parts = read_element(read_limited(path, MAX_XML_BYTES, TreeFileError), str(path)).children
     return [path, *[path.parent / part.attributes.get("path", "") for part in parts if part.tag == "include"]]
 
 
@@ -105,7 +105,7 @@ def _included(project: Path, file: str) -> tuple[str, bytes]:
     if len(tree_files(project)) > 1 + _MOST_FILES:
         raise TreeFileError(file, f"a project includes at most {_MOST_FILES} files")
     path = project.parent / file
-    return str(path), read_limited(path, MAX_BYTES, TreeFileError)
+    return str(path), read_limited(path, MAX_XML_BYTES, TreeFileError)
 
 
 def try_build(file: TreeFile, vocabulary: Vocabulary) -> None:

@@ -13,10 +13,10 @@ from xml.parsers import expat
 
 from robobt.tree.interop.model import TreeFileError
 
-MAX_BYTES = 1024 * 1024
+MAX_XML_BYTES = 1024 * 1024
 """Largest text that is read."""
 
-MAX_DEPTH = 100
+MAX_XML_DEPTH = 100
 """Deepest nesting that is followed."""
 
 
@@ -33,9 +33,9 @@ class Element:
 
 def read_element(content: bytes | str, source: str) -> Element:
     """Return the outermost element of a document."""
-    if len(content) > MAX_BYTES:
-        raise TreeFileError(source, f"is larger than {MAX_BYTES // 1024} KiB")
-    reader = _Reader(source)
+    if len(content) > MAX_XML_BYTES:
+        raise TreeFileError(source, f"is larger than {MAX_XML_BYTES // 1024} KiB")
+    reader = _ElementReader(source)
     try:
         reader.parser.Parse(content, True)
     except expat.ExpatError as error:
@@ -50,7 +50,7 @@ def read_element(content: bytes | str, source: str) -> Element:
     return reader.root
 
 
-class _Reader:
+class _ElementReader:
     def __init__(self, source: str) -> None:
         self.source = source
         self.root: Element | None = None
@@ -71,8 +71,8 @@ class _Reader:
 
     def _start(self, tag: str, attributes: list[str]) -> None:
         element = Element(tag, dict(zip(attributes[::2], attributes[1::2], strict=True)), self.line)
-        if len(self.open) >= MAX_DEPTH:
-            raise TreeFileError(self.source, f"nested deeper than {MAX_DEPTH} levels", line=self.line)
+        if len(self.open) >= MAX_XML_DEPTH:
+            raise TreeFileError(self.source, f"nested deeper than {MAX_XML_DEPTH} levels", line=self.line)
         if self.open:
             self.open[-1].children.append(element)
         else:

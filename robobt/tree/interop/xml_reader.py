@@ -10,7 +10,7 @@ from robobt.tree.interop.btcpp import (
     METADATA,
     NODE_TAGS,
     OTHER_TAGS,
-    SCRIPTS,
+    SCRIPT_ATTRIBUTES,
     TAGS,
     UNKNOWN_HERE,
     VERSION_3_ATTRIBUTES,
@@ -41,19 +41,19 @@ def parse_xml(
     the one that is not a sub-tree of another.
     """
     try:
-        file = _Reader(vocabulary, source, include).file(read_element(text, source))
+        file = _XmlTreeReader(vocabulary, source, include).file(read_element(text, source))
         verify(file, vocabulary)
     except RecursionError as error:
         raise TreeFileError(source, "it is nested too deeply") from error
     return file
 
 
-class _Reader(ElementChecker):
+class _XmlTreeReader(ElementChecker):
     def __init__(self, vocabulary: Vocabulary, source: str, include: Include | None = None) -> None:
         super().__init__(source)
         self.vocabulary, self.include = vocabulary, include
         self.trees: dict[str, Definition] = {}
-        self.models: list[tuple[_Reader, Element]] = []
+        self.models: list[tuple[_XmlTreeReader, Element]] = []
 
     def file(self, root: Element) -> TreeFile:
         self._parts(root)
@@ -100,7 +100,7 @@ class _Reader(ElementChecker):
             source, text = self.include(self.word(part, "path"))
         except TreeFileError as error:
             raise self.error(part, f"<include>: {error}") from error
-        included = _Reader(self.vocabulary, source)
+        included = _XmlTreeReader(self.vocabulary, source)
         included.trees, included.models = self.trees, self.models
         included._parts(read_element(text, source))
 
@@ -134,7 +134,7 @@ class _Reader(ElementChecker):
         self.no_text(element)
         self._check_version(element)
         for name in element.attributes:
-            if name in SCRIPTS:
+            if name in SCRIPT_ATTRIBUTES:
                 raise self.error(element, f"{name}: robobt has no scripts; write a condition")
             if name.startswith("_") and name not in METADATA and element.tag != "SubTree":
                 raise self.error(element, f"<{element.tag}> has no attribute {name}")
@@ -160,9 +160,9 @@ class _Reader(ElementChecker):
         spec = SubTree(self.word(element, "ID"), line=element.line)
         for name, text in element.attributes.items():
             if name == "_autoremap":
-                if text.lower() not in _WORDS:
+                if text.lower() not in _BOOLEAN_WORDS:
                     raise self.error(element, f"_autoremap is true or false, not {text!r}")
-                spec.autoremap = _WORDS[text.lower()]
+                spec.autoremap = _BOOLEAN_WORDS[text.lower()]
             elif name == "name":
                 spec.label = self.word(element, "name")
             elif name.startswith("_") and name not in METADATA:
@@ -337,5 +337,5 @@ class _Reader(ElementChecker):
         return Name(name)
 
 
-_WORDS = {"true": True, "false": False, "1": True, "0": False}
+_BOOLEAN_WORDS = {"true": True, "false": False, "1": True, "0": False}
 _POINTER = re.compile(r"@?[^\W\d]\w*")

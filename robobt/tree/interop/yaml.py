@@ -27,7 +27,7 @@ from robobt.tree.parameters import Parameter, ParameterError
 def parse_yaml(text: bytes | str, vocabulary: Vocabulary, source: str = "tree") -> TreeFile:
     """Return the trees of a YAML text."""
     try:
-        file = _Reader(vocabulary, source).file(parse_marked(text, source, TreeFileError))
+        file = _YamlTreeReader(vocabulary, source).file(parse_marked(text, source, TreeFileError))
         verify(file, vocabulary)
     except RecursionError as error:
         raise TreeFileError(source, "it is nested too deeply") from error
@@ -53,7 +53,7 @@ def write_yaml(file: TreeFile) -> str:
     return yaml.write_yaml(data)
 
 
-class _Reader:
+class _YamlTreeReader:
     def __init__(self, vocabulary: Vocabulary, source: str) -> None:
         self.vocabulary, self.source = vocabulary, source
 

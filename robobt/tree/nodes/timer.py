@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Protocol
 
-_SLACK = 1e-9
+_DURATION_ROUNDING = 1e-9
 
 
 class HasTime(Protocol):
@@ -41,7 +41,7 @@ class Timer:
     def runs(self, now: float) -> bool:
         """Return whether it was started and less than ``seconds`` have passed at ``now`` [s]."""
         # The slack keeps a multiple of the control period from taking a tick longer.
-        return self._started is not None and 0.0 <= now - self._started < self.seconds - _SLACK
+        return self._started is not None and 0.0 <= now - self._started < self.seconds - _DURATION_ROUNDING
 
     @property
     def until(self) -> float:

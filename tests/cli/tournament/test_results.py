@@ -1,4 +1,4 @@
-"""``robobt results``."""
+"""``robobt tournament results``."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import pytest
 from typer.testing import CliRunner, Result
 
 from robobt.cli import app
-from robobt.tournament.store import Store
+from robobt.tournament.store import MatchStore
 from tests.tournament.made_up import played, runner
 
 PLAYED = {"scenario": "drill", "digest": "1234", "seed": 3, "referee": "own", "robobt": "0"}
@@ -28,7 +28,7 @@ def plain(shown: Result) -> str:
 def store(tmp_path: Path) -> Path:
     """A wins all its matches, B draws all its others."""
     path = tmp_path / "night.sqlite"
-    with Store(path, PLAYED) as store:
+    with MatchStore(path, PLAYED) as store:
         store.enter([runner(1.0), runner(2.0), runner(3.0)])
         for number in range(3):
             for one, other, goals in ((A, B, 2), (A, C, 1 + number), (B, C, 0)):
@@ -73,7 +73,7 @@ def test_two_entrants_are_compared_by_whom_both_have_met(store: Path) -> None:
 
 def test_stores_of_several_machines_are_merged(store: Path, tmp_path: Path) -> None:
     other = tmp_path / "other.sqlite"
-    with Store(other, PLAYED) as held:
+    with MatchStore(other, PLAYED) as held:
         held.enter([runner(1.0), runner(2.0)])
         held.add(played(A, B, 0, (2, 0)))
         held.add(played(A, B, 7, (2, 0)))
@@ -103,6 +103,6 @@ def test_a_store_that_is_none_is_told(tmp_path: Path) -> None:
     assert shown.exit_code == 1
     assert "gone.sqlite: there is no such file" in plain(shown)
     empty = tmp_path / "empty.sqlite"
-    with Store(empty, PLAYED):
+    with MatchStore(empty, PLAYED):
         pass
     assert "no match is left, or none was played yet" in plain(invoke(empty))

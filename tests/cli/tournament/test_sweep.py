@@ -1,4 +1,4 @@
-"""``robobt sweep``."""
+"""``robobt tournament sweep``."""
 
 from __future__ import annotations
 

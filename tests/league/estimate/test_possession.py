@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robobt.league.estimate.possession import Hold
+from robobt.league.estimate.possession import CarriedBall
 from robobt.league.estimate.robot_track import RobotMotion
 from robobt.world.game import Team
 from robobt.world.state import RobotId
@@ -16,7 +16,7 @@ from robobt.world.state import RobotId
 
 @given(heading=st.floats(-pi, pi), omega=st.floats(-5.0, 5.0))
 def test_a_carried_ball_circles_the_robot_that_turns(heading: float, omega: float) -> None:
-    hold, step = Hold(RobotId(Team.BLUE, 2), 0.1, 0.02), 1e-5
+    hold, step = CarriedBall(RobotId(Team.BLUE, 2), 0.1, 0.02), 1e-5
     ball = hold.ball(RobotMotion(1.0, 0.5, heading, 0.3, -0.2, omega))
     then = hold.ball(RobotMotion(1.0 + 0.3 * step, 0.5 - 0.2 * step, heading + omega * step))
     assert ((then.x - ball.x) / step, (then.y - ball.y) / step) == pytest.approx((ball.vx, ball.vy), abs=1e-4)

@@ -73,7 +73,7 @@ def test_who_does_not_end_when_told_is_stubborn(deaf: bool, tmp_path: Path) -> N
 def test_a_program_is_ended_whatever_it_does_to_its_guard(
     harm: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("robobt.league.programs.process._GONE", 1.0)
+    monkeypatch.setattr("robobt.league.programs.process._CLEANUP_TIMEOUT", 1.0)
     code = (
         "import os, signal, time; from pathlib import Path\n"
         "def others():\n"

@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 from pydantic import ValidationError
 
-from robobt.league.programs.program import PLACES, Program
+from robobt.league.programs.program import PLACEHOLDERS, Program
 
 
 def program(*command: str, **more: Any) -> Program:
@@ -23,7 +23,7 @@ def test_places_are_filled_in_and_other_braces_stay() -> None:
 def test_a_place_that_is_not_there_is_told_with_those_that_are() -> None:
     with pytest.raises(ValidationError, match=r"nothing is filled in for {visoin}; there are {team}, {host}"):
         program("x", "{visoin}")
-    assert program("x", *[f"{{{place}}}" for place in PLACES], lockstep=True)
+    assert program("x", *[f"{{{place}}}" for place in PLACEHOLDERS], lockstep=True)
 
 
 def test_steps_are_for_lock_step() -> None:

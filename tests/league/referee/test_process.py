@@ -132,7 +132,7 @@ def test_it_ends_at_once_even_if_it_minds_no_signal_and_has_started_others(
 def test_it_ends_even_if_it_has_stopped_what_would_end_it(
     program: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("robobt.league.referee.process._GONE", 1.0)
+    monkeypatch.setattr("robobt.league.referee.process._SHUTDOWN_TIMEOUT", 1.0)
     stops, now = tmp_path / "stops", tmp_path / "now"
     stops.write_text(f'#!/bin/sh\n{program} "$@" & while [ ! -e {now} ]; do sleep 0.1; done; kill -STOP 0\n')
     stops.chmod(0o755)

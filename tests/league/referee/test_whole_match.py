@@ -15,7 +15,7 @@ from robobt.match import load_scenario
 from robobt.match.loop import MatchLoop
 from robobt.match.referee.controller import Controller
 from robobt.match.referee.events import Decision, EventKind
-from robobt.match.referee.restarts import PLACE, Resumption
+from robobt.match.referee.restarts import PLACEMENT_COMMANDS, Resumption
 from robobt.match.scenario.scenario import Scenario
 from robobt.world.field import FieldGeometry
 from robobt.world.game import GameState, RefereeCommand, Restart, Team
@@ -152,7 +152,7 @@ class Beside:
             return "a goal leads to a HALT and 10 s of STOP there, to a STOP here"
         if seen(replace(ours, blue=theirs.blue, yellow=theirs.yellow)) == seen(theirs):
             return "play is stopped for some 0.1 s less a restart here, so that cards are over sooner"
-        places = set(PLACE.values())
+        places = set(PLACEMENT_COMMANDS.values())
         if (
             ours.command in places
             and theirs.command in places
@@ -185,7 +185,7 @@ class Beside:
                 record.yellow.append(CARD_SLACK)
             while most is not None and record.yellow and record.max_robots < most:
                 record.yellow.remove(min(record.yellow))
-        if game.command in PLACE.values() and game.restart_team is not None:
+        if game.command in PLACEMENT_COMMANDS.values() and game.restart_team is not None:
             state.placing.order(game.restart_team, frame.time)
             state.give(game.command, state.placing.deadline)
         elif game.halted:
@@ -198,9 +198,9 @@ class Beside:
 
 def compare(seconds: float | None, seed: int, name: str = "six_v_six") -> Comparison:
     """Play under the official controller at the rules' times; all of it where ``seconds`` is None."""
-    from robobt.cli.refereeing import Stages, Who, refereed
+    from robobt.cli.refereeing import MatchExtent, Who, refereed
 
-    scenario, _ = refereed(load_scenario(name), Who.OFFICIAL, Path(OFFICIAL), Stages.FULL)
+    scenario, _ = refereed(load_scenario(name), Who.OFFICIAL, Path(OFFICIAL), MatchExtent.FULL)
     if seconds is not None:
         scenario = scenario.lasting(seconds)
     made: list[Beside] = []

@@ -76,6 +76,6 @@ def test_the_longest_message_is_still_accepted(ends: Ends) -> None:
 
 def test_who_never_reads_is_not_waited_for_without_end(ends: Ends, monkeypatch: pytest.MonkeyPatch) -> None:
     stream, _ = ends
-    monkeypatch.setattr("robobt.league.wire.stream._PATIENCE", 0.05)
+    monkeypatch.setattr("robobt.league.wire.stream._SEND_TIMEOUT", 0.05)
     with pytest.raises(StreamError, match=r"^the other side has read nothing for 0.05 s$"):
         stream.send(bytes(100_000_000))

@@ -7,7 +7,7 @@ import torch
 from robobt.learning.agents.ddpg import DDPG
 from robobt.learning.agents.networks import Actor
 from robobt.learning.agents.nstep import Transitions
-from robobt.learning.agents.replay import PrioritisedReplay, Replay
+from robobt.learning.agents.replay import PrioritisedReplay, ReplayBuffer
 from robobt.learning.agents.settings import AgentSettings
 from tests.learning.tiny import small_agent
 
@@ -22,7 +22,7 @@ SWITCHES = [
 
 def batch(seed=0, rows=64, replay=None):
     rng = np.random.default_rng(seed)
-    replay = Replay(rows, 3, 2) if replay is None else replay
+    replay = ReplayBuffer(rows, 3, 2) if replay is None else replay
     replay.add(
         Transitions(
             rng.normal(size=(rows, 3)),

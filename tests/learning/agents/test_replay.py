@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from robobt.learning.agents.nstep import Transitions
-from robobt.learning.agents.replay import PrioritisedReplay, Replay
+from robobt.learning.agents.replay import PrioritisedReplay, ReplayBuffer
 from robobt.learning.agents.sum_tree import SumTree
 
 
@@ -31,7 +31,7 @@ def prioritised(capacity=100, **changes):
 
 
 def test_the_newest_take_the_place_of_the_oldest():
-    replay = Replay(10, 2, 1)
+    replay = ReplayBuffer(10, 2, 1)
     for first in range(0, 28, 4):
         replay.add(rows(first, 4))
     assert len(replay) == 10
@@ -39,7 +39,7 @@ def test_the_newest_take_the_place_of_the_oldest():
 
 
 def test_demonstrations_are_never_overwritten():
-    replay = Replay(10, 2, 1)
+    replay = ReplayBuffer(10, 2, 1)
     replay.add(rows(0, 4))
     replay.keep()
     for first in range(100, 150, 5):
@@ -48,7 +48,7 @@ def test_demonstrations_are_never_overwritten():
 
 
 def test_a_replay_full_of_kept_transitions_is_refused():
-    replay = Replay(4, 2, 1)
+    replay = ReplayBuffer(4, 2, 1)
     replay.add(rows(0, 4))
     with pytest.raises(ValueError, match="no room"):
         replay.keep()
@@ -56,11 +56,11 @@ def test_a_replay_full_of_kept_transitions_is_refused():
 
 def test_more_at_once_than_there_is_room_for_is_refused():
     with pytest.raises(ValueError, match="room for 3"):
-        Replay(3, 2, 1).add(rows(0, 4))
+        ReplayBuffer(3, 2, 1).add(rows(0, 4))
 
 
 def test_a_batch_does_not_change_with_the_replay():
-    replay = Replay(4, 2, 1)
+    replay = ReplayBuffer(4, 2, 1)
     replay.add(rows(0, 4))
     batch = replay.gather(np.array([0]), None)
     replay.add(rows(50, 4))
@@ -68,7 +68,7 @@ def test_a_batch_does_not_change_with_the_replay():
 
 
 def test_every_row_is_drawn_as_often_as_any_other():
-    replay = Replay(8, 2, 1)
+    replay = ReplayBuffer(8, 2, 1)
     replay.add(rows(0, 6))
     drawn = np.bincount(replay.sample(60_000, np.random.default_rng(0)).rows, minlength=8)
     assert drawn[6:].sum() == 0
@@ -76,7 +76,7 @@ def test_every_row_is_drawn_as_often_as_any_other():
 
 
 def test_returns_of_two_horizons_stay_apart():
-    replay = Replay(8, 2, 1, horizons=2)
+    replay = ReplayBuffer(8, 2, 1, horizons=2)
     near = rows(0, 3)._replace(reward=np.array([7.0, 8.0, 9.0]))
     replay.add(rows(0, 3), near)
     far, close = replay.gather(np.arange(3), None).bootstraps
@@ -117,7 +117,7 @@ def test_demonstrations_have_a_bonus():
     assert share == pytest.approx([5 / 12, 5 / 12, 1 / 12, 1 / 12], abs=0.01)
 
 
-@pytest.mark.parametrize("make", [lambda: Replay(10, 2, 1), prioritised])
+@pytest.mark.parametrize("make", [lambda: ReplayBuffer(10, 2, 1), prioritised])
 def test_a_restored_replay_goes_on_as_the_one_it_was(make):
     replay, again = make(), make()
     replay.add(rows(0, 4))

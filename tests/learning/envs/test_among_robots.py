@@ -9,7 +9,7 @@ import pytest
 
 from robobt.learning.envs import GoToBallAmongRobotsSettings, GoToBallTask, run_starts
 from robobt.learning.envs.scripted import freest_way, straight_drive_among
-from robobt.learning.opponents.patrols import TRAITS, Patrols
+from robobt.learning.opponents.patrols import PATROL_TRAITS, Patrols
 from robobt.learning.training.teachers import playing, skill
 from robobt.sim.records import COMMAND, size
 from robobt.world import BallState, Frame, RobotState
@@ -19,7 +19,7 @@ from robobt.world.avoiding import (
     LAG,
     MARGIN,
     SLOW_WAYS,
-    SPEED,
+    WAY_SPEED,
     WAYS,
     among_robots_of,
     among_robots_rows,
@@ -70,7 +70,7 @@ def test_the_ball_is_reached_past_a_robot_that_is_elsewhere() -> None:
 def test_starts_are_what_the_specification_says() -> None:
     made = task()
     rows, others = made.sample_starts(3, 400), made.settings.others
-    states, traits = rows[:, 6:36].reshape(-1, 5, 6), rows[:, 40:].reshape(-1, 5, len(TRAITS))
+    states, traits = rows[:, 6:36].reshape(-1, 5, 6), rows[:, 40:].reshape(-1, 5, len(PATROL_TRAITS))
     at, first, last = states[..., :2], traits[..., :2], traits[..., 2:4]
     way, robot, ball = last - first, rows[:, None, :2], rows[:, None, 36:38]
     length = np.linalg.norm(way, axis=-1)
@@ -130,9 +130,9 @@ def test_a_way_is_free_until_two_that_go_on_come_near() -> None:
     for way in range(WAYS + SLOW_WAYS + 1):
         speed, angle = 0.0, 0.0
         if way < WAYS:
-            speed, angle = SPEED, 2 * np.pi * way / WAYS
+            speed, angle = WAY_SPEED, 2 * np.pi * way / WAYS
         elif way < WAYS + SLOW_WAYS:
-            speed, angle = SPEED / 2, 2 * np.pi * (way - WAYS) / SLOW_WAYS
+            speed, angle = WAY_SPEED / 2, 2 * np.pi * (way - WAYS) / SLOW_WAYS
         velocity = speed * np.column_stack((np.cos(to_ball + angle), np.sin(to_ball + angle)))
         # Half the lag is driven as before.
         begins = robots[:, 0, :2] + LAG / 2 * (robots[:, 0, 3:5] - velocity)

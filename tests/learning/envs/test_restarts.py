@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from robobt.learning.envs import make_task
-from robobt.learning.envs.soccer.judge import Stop
+from robobt.learning.envs.soccer.judge import StopReason
 from robobt.learning.envs.soccer.settings import SoccerRules, SoccerSettings, SoccerStarts
 from robobt.learning.envs.soccer.suite import SUITE, instead, scripted
 from robobt.learning.envs.soccer.task import SoccerTask
@@ -253,7 +253,7 @@ def test_scripted_robots_take_their_restarts_and_leave_the_others_theirs(setting
         taken += int(over.sum())
         assert (states["left"][over] > 100.0).all()
         faults += int((states["pause"] > pause).sum())
-        assert not (made._restarts.stops == Stop.TWICE).any()
+        assert not (made._restarts.stops == StopReason.TWICE).any()
     assert taken >= 4
     assert faults <= taken / 10
 

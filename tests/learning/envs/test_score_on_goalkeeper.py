@@ -10,7 +10,7 @@ import pytest
 from robobt.learning.envs import ScoreOnGoalkeeperSettings, ScoreOnGoalkeeperTask, run_starts
 from robobt.learning.envs.score_on_goalkeeper.rewards import ScoreReward, kicked
 from robobt.learning.opponents.goalkeepers import Goalkeepers
-from robobt.learning.opponents.keepers import KINDS
+from robobt.learning.opponents.keepers import GOALKEEPER_KINDS
 from robobt.models.actions import command_of
 from robobt.sim import SimWorld
 from robobt.world import BallState, Placement, RobotId, RobotState, Team
@@ -18,7 +18,7 @@ from robobt.world.scoring import score_on_goalkeeper_of
 
 HELD = 0.0968
 STAY, KICK = np.array([0.0, 0.0, 0.0, -1.0]), np.array([0.0, 0.0, 0.0, 1.0])
-SHIPPED = KINDS.index("shipped")
+SHIPPED = GOALKEEPER_KINDS.index("shipped")
 
 
 def start(
@@ -27,7 +27,7 @@ def start(
 ) -> list[float]:  # fmt: skip
     x, y, heading = robot
     lies = ball or (x + HELD * np.cos(heading), y + HELD * np.sin(heading), 0.0, 0.0)
-    return [x, y, heading, 0, 0, 0, *keeper, np.pi, 0, 0, 0, *lies, KINDS.index(kind), speed, 0.15]
+    return [x, y, heading, 0, 0, 0, *keeper, np.pi, 0, 0, 0, *lies, GOALKEEPER_KINDS.index(kind), speed, 0.15]
 
 
 def task(*starts: list[float], **changes: Any) -> ScoreOnGoalkeeperTask:
@@ -58,13 +58,13 @@ def test_a_shot_past_a_goalkeeper_that_is_elsewhere_is_a_goal() -> None:
     )
 
 
-@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("kind", GOALKEEPER_KINDS)
 def test_every_goalkeeper_stops_a_shot_from_afar_at_itself(kind: str) -> None:
     made = task(start((1.0, 0.0, 0.0), kind=kind))
     assert not to_the_end(made, KICK).success[0]
 
 
-@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("kind", GOALKEEPER_KINDS)
 def test_a_fast_goalkeeper_stops_more_than_a_slow_one(kind: str) -> None:
     rng, goals = np.random.default_rng(1), []
     aims = rng.uniform(-0.45, 0.45, 60)

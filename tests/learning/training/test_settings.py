@@ -9,8 +9,8 @@ from robobt.learning.agents.settings import AgentSettings, PPOSettings
 from robobt.learning.training.preset_files import assign, presets
 from robobt.learning.training.run_folder import SETTINGS, RunFolderError, read_settings
 from robobt.learning.training.setting_groups import (
-    CollectionSettings,
     DemonstrationSettings,
+    ExperienceSettings,
     PrioritySettings,
     ReplaySettings,
 )
@@ -183,7 +183,7 @@ def test_an_old_name_of_a_setting_is_an_error_that_says_the_new_one(tmp_path, ch
         ReplaySettings,
         PrioritySettings,
         DemonstrationSettings,
-        CollectionSettings,
+        ExperienceSettings,
     ],
 )
 def test_a_renamed_setting_is_there_under_its_new_name_only(group):

@@ -23,7 +23,7 @@ def ahead(observation: FloatArray) -> FloatArray:
 
 def test_an_evaluation_is_shown_to_who_watches_and_is_the_same(monkeypatch: pytest.MonkeyPatch) -> None:
     settings = load_settings("go_to_ball", "fast", {})
-    monkeypatch.setattr(watched, "SHOWN", 1)
+    monkeypatch.setattr(watched, "SHOWN_STARTS", 1)
     server = Server()
     problem = watched.watched_problem(server, settings)
     alone = problem_of(settings.environment).evaluate(ahead, "validation", 4)

@@ -120,6 +120,8 @@ def test_a_setting_of_a_rater_is_named_in_one_line(tmp_path: Path):
         ("attack_nn", {"model": "shot_nn"}, "rater: {name: nn_filtered, model: ...}"),
         ("attack_expected", {"threshold": 0.8}, "rater: {name: expected_goal, threshold: ...}"),
         ("penalty_kick", {"threshold": 0.8}, "min_score: ..."),
+        ("attack_nn", {"speed": 0.5}, "write speed_factor"),
+        ("goalkeeper", {"speed": 0.5}, "write speed_factor"),
     ],
 )
 def test_a_setting_of_earlier_versions_is_refused_with_what_to_write(

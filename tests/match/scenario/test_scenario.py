@@ -11,7 +11,7 @@ import pytest
 from pydantic import BaseModel
 
 from robobt.config.resources import bundled_scenarios
-from robobt.config.yaml import MAX_BYTES, MAX_DEPTH, parse_marked, write_yaml
+from robobt.config.yaml import MAX_YAML_BYTES, MAX_YAML_DEPTH, parse_marked, write_yaml
 from robobt.match import ScenarioError, load_scenario
 from robobt.match.scenario.placing import HELD_DISTANCE
 from robobt.match.scenario.robots import RobotSetup
@@ -96,13 +96,13 @@ class TestFiles:
             ("name: x\n---\nname: y", ":2: a second document"),
             ("- 1\n- 2", "must hold a mapping of fields"),
             ("", "must hold a mapping of fields"),
-            ("name: " + "[" * (MAX_DEPTH + 1) + "]" * (MAX_DEPTH + 1), ":1: nested deeper"),
+            ("name: " + "[" * (MAX_YAML_DEPTH + 1) + "]" * (MAX_YAML_DEPTH + 1), ":1: nested deeper"),
             ("seed: " + "9" * 5000, ":1: '9999"),
             ("seed: 0x" + "f" * 5000, ":1: '0xff"),
             ("seed: !!int 1", ":1: the tag tag:yaml.org,2002:int is not allowed"),
             (b"name: \xff\xfe\x00", "is not text"),
             ("name: a\x00b", "is not text"),
-            ("# " + "x" * MAX_BYTES, "is larger than 128 KiB"),
+            ("# " + "x" * MAX_YAML_BYTES, "is larger than 128 KiB"),
         ],
         ids=lambda value: str(value)[:20],
     )

@@ -15,7 +15,7 @@ from robobt.shots.collect.trial import play_trial
 from robobt.shots.collect.watch import take_shot
 from robobt.shots.data.files import read_shots
 from robobt.shots.data.problems import ShotDataError
-from robobt.shots.data.schema import COLUMNS
+from robobt.shots.data.schema import SHOT_COLUMNS
 from robobt.shots.keepers.population import REAL, read_population
 from robobt.sim import SimWorld, preset
 from robobt.world import RobotCommand, RobotId, Team
@@ -161,7 +161,7 @@ def test_more_shots_can_be_asked_for_later(collected: Path, tmp_path: Path):
 
 def test_every_column_is_described_beside_the_file_and_in_it(collected: Path, tmp_path: Path):
     described = json.loads(collected.with_name("shots.csv.json").read_text())
-    assert [column["name"] for column in described["columns"]] == [column.name for column in COLUMNS]
+    assert [column["name"] for column in described["columns"]] == [column.name for column in SHOT_COLUMNS]
     assert all(column["meaning"] for column in described["columns"])
     collect_shots(SETTINGS, tmp_path / "shots.parquet", 5)
     field = pq.read_schema(tmp_path / "shots.parquet").field("distance_to_goal")

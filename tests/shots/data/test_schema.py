@@ -4,7 +4,14 @@ import numpy as np
 import pyarrow as pa
 import pytest
 
-from robobt.shots.data.schema import COLUMNS, RECORDED, SCHEMA, VERSION, complete_row, nearest_to_line
+from robobt.shots.data.schema import (
+    RECORDED,
+    SCHEMA,
+    SHOT_COLUMNS,
+    SHOTS_VERSION,
+    complete_row,
+    nearest_to_line,
+)
 
 SHOT = {
     "robot_x": 1.0,
@@ -26,7 +33,7 @@ SHOT = {
 
 def test_the_shot_frame_is_worked_out_from_the_field_frame():
     row = complete_row(SHOT)
-    assert row["schema_version"] == VERSION
+    assert row["schema_version"] == SHOTS_VERSION
     assert row["angle_to_goal"] == pytest.approx(math.pi / 2)
     assert row["distance_to_goal"] == pytest.approx(3.0)
     assert (row["opp_x"], row["opp_y"]) == pytest.approx((2.0, 0.4))
@@ -56,7 +63,7 @@ def test_a_row_fits_the_table_and_columns_say_what_they_are():
     table = pa.Table.from_pylist([complete_row(SHOT)], schema=SCHEMA)
     assert table.num_rows == 1
     assert table.schema.field("opp_y").metadata[b"unit"] == b"m"
-    assert all(column.meaning for column in COLUMNS)
+    assert all(column.meaning for column in SHOT_COLUMNS)
     assert set(SCHEMA.names) >= RECORDED
 
 

@@ -5,7 +5,7 @@ from itertools import pairwise
 import torch
 from torch import Tensor, nn
 
-from robobt.shots.predict.batched import ADAM, PLATEAU_GAIN, Recipe, Task, batch_bounds
+from robobt.shots.predict.batched import ADAM, PLATEAU_GAIN, Recipe, TrainingSet, batch_bounds
 from robobt.shots.predict.networks import NORM_EPS, NORM_MOMENTUM, ShotNetwork
 
 
@@ -22,7 +22,7 @@ class KerasNorm(nn.BatchNorm1d):
         return nn.functional.batch_norm(x, None, None, self.weight, self.bias, training=True, eps=self.eps)
 
 
-def train_plainly(task: Task, recipe: Recipe) -> ShotNetwork:
+def train_plainly(task: TrainingSet, recipe: Recipe) -> ShotNetwork:
     generator = torch.Generator().manual_seed(task.seed)
     network = ShotNetwork(task.inputs.shape[1], recipe.layers, generator)
     for i, norm in enumerate(network.norms):

@@ -2,19 +2,19 @@ import numpy as np
 import pytest
 import torch
 
-from robobt.shots.predict.batched import Recipe, Task, batch_bounds, train_networks
+from robobt.shots.predict.batched import Recipe, TrainingSet, batch_bounds, train_networks
 from robobt.shots.predict.networks import TABLE_ONE, Layer, ShotNetwork
 from tests.shots.predict.plain_training import train_plainly
 
 
-def _task(samples: int, seed: int, held: int = 20) -> Task:
+def _task(samples: int, seed: int, held: int = 20) -> TrainingSet:
     rng = np.random.default_rng(seed)
     inputs = torch.tensor(rng.normal(3.0, 2.0, (samples + held, 4)), dtype=torch.float32)
     labels = (inputs[:, 0] + inputs[:, 1] * inputs[:, 2] > 9.0).float()
-    return Task(inputs[:samples], labels[:samples], inputs[samples:], labels[samples:], seed)
+    return TrainingSet(inputs[:samples], labels[:samples], inputs[samples:], labels[samples:], seed)
 
 
-def _apart(one: ShotNetwork, other: ShotNetwork, task: Task) -> float:
+def _apart(one: ShotNetwork, other: ShotNetwork, task: TrainingSet) -> float:
     with torch.no_grad():
         return float((one(task.held_inputs) - other(task.held_inputs)).abs().max())
 

@@ -6,7 +6,7 @@ import pytest
 import torch
 
 from robobt.shots.data import ShotDataError, goals, read_shots, shot_inputs
-from robobt.shots.predict.batched import Recipe, Task, train_networks
+from robobt.shots.predict.batched import Recipe, TrainingSet, train_networks
 from robobt.shots.predict.features import paper_features
 from robobt.shots.predict.networks import author_network
 from robobt.shots.predict.validation import judge
@@ -36,7 +36,7 @@ def test_a_file_without_the_weights_of_table_1_is_refused(tmp_path: Path):
 def test_the_module_of_probabilities_answers_what_the_network_does():
     x = torch.randn(40, 4, generator=torch.Generator().manual_seed(0))
     y = (x[:, 0] > 0).float()
-    network = train_networks([Task(x[:30], y[:30], x[30:], y[30:], 0)], Recipe(warm_up=2, epochs=3))[0]
+    network = train_networks([TrainingSet(x[:30], y[:30], x[30:], y[30:], 0)], Recipe(warm_up=2, epochs=3))[0]
     with torch.no_grad():
         expected = torch.sigmoid(network(x))
         torch.testing.assert_close(network.probabilities()(x), expected)

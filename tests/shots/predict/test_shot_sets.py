@@ -37,7 +37,7 @@ def test_a_single_file_is_split_as_it_says_or_as_in_the_paper(tmp_path: Path):
 def test_without_data_the_error_says_how_to_collect_some(monkeypatch: pytest.MonkeyPatch, tmp_path: Path):
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr("robobt.shots.predict.shot_sets.models_folder", lambda: tmp_path)
-    with pytest.raises(ShotDataError, match="robobt collect shots"):
+    with pytest.raises(ShotDataError, match="robobt shots collect"):
         load_shot_sets()
     (tmp_path / "out").mkdir()
     write_shots(made_up_table(80, split=True), tmp_path / "out" / "paper_shots.parquet")

@@ -111,7 +111,7 @@ def test_the_hand_written_policy_aims_at_the_selected_shot() -> None:
     assert alone.command.omega > 0.0
     alone.store.shot = None
     alone.tick(frame(me, ball=held(me)))
-    assert alone.command.kick_speed == shoot.Geometric().kick_speed
+    assert alone.command.kick_speed == shoot.GeometricShot().kick_speed
 
 
 def test_the_hand_written_policy_allows_for_the_balls_sideways_velocity() -> None:

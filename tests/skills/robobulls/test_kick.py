@@ -5,7 +5,7 @@ from math import cos, degrees, hypot, pi, radians, sin
 import pytest
 
 from robobt.skills.robobulls.detour import allowed, first_waypoint
-from robobt.skills.robobulls.kick import ROBOBULLS_KICK_SPEED, RobobullsKick, Stage
+from robobt.skills.robobulls.kick import ROBOBULLS_KICK_SPEED, KickStage, RobobullsKick
 from robobt.skills.robobulls.pilot import robobulls_drive
 from robobt.skills.store import Store
 from robobt.testing import frame, robot
@@ -24,7 +24,9 @@ def tick(
     return kick.tick(store, GOAL), store
 
 
-def drive_until(kick: RobobullsKick, me: RobotState, ball: tuple[float, float], stage: Stage) -> RobotState:
+def drive_until(
+    kick: RobobullsKick, me: RobotState, ball: tuple[float, float], stage: KickStage
+) -> RobotState:
     for _ in range(400):
         _, store = tick(kick, me, ball)
         if kick.stage is stage:
@@ -35,19 +37,19 @@ def drive_until(kick: RobobullsKick, me: RobotState, ball: tuple[float, float], 
 
 def lined_up() -> RobobullsKick:
     kick = RobobullsKick()
-    drive_until(kick, robot(-0.3, 0.0), (0.0, 0.0), Stage.FORWARD)
+    drive_until(kick, robot(-0.3, 0.0), (0.0, 0.0), KickStage.FORWARD)
     return kick
 
 
 def test_a_robot_that_points_at_target_and_ball_lines_up_at_once() -> None:
     kick = RobobullsKick()
     tick(kick, robot(-2.0, 0.0), (0.0, 0.0))
-    assert kick.stage is Stage.LINE_UP
+    assert kick.stage is KickStage.LINE_UP
 
 
 def test_a_robot_before_the_ball_drives_behind_it_first() -> None:
     kick = RobobullsKick()
-    me = drive_until(kick, robot(1.0, 0.3, heading=pi), (0.0, 0.0), Stage.LINE_UP)
+    me = drive_until(kick, robot(1.0, 0.3, heading=pi), (0.0, 0.0), KickStage.LINE_UP)
     assert hypot(me.x + 0.1265, me.y) < 0.15
     assert abs(degrees(me.heading)) < 5.0
 
@@ -63,7 +65,7 @@ def test_it_creeps_to_the_ball_with_the_dribbler_on() -> None:
 def test_it_kicks_at_full_power_when_it_holds_the_ball_and_points_at_the_target() -> None:
     kick = lined_up()
     _, store = tick(kick, robot(-0.11, 0.0), (0.0, 0.0))
-    assert kick.stage is Stage.KICK
+    assert kick.stage is KickStage.KICK
     assert store.command.kick_speed == ROBOBULLS_KICK_SPEED
     assert store.command.kick_trigger is KickTrigger.NOW
 
@@ -71,7 +73,7 @@ def test_it_kicks_at_full_power_when_it_holds_the_ball_and_points_at_the_target(
 def test_it_does_not_kick_beside_the_target() -> None:
     kick = lined_up()
     _, store = tick(kick, robot(-0.11, 0.0, heading=radians(1.5)), (0.0, 0.0))
-    assert kick.stage is Stage.FORWARD
+    assert kick.stage is KickStage.FORWARD
     assert store.command.kick_speed == 0.0
 
 
@@ -87,13 +89,13 @@ def test_a_ball_that_slipped_away_unkicked_is_fetched_again() -> None:
     tick(kick, robot(-0.11, 0.0), (0.0, 0.0))
     status, _ = tick(kick, robot(-0.11, 0.0, heading=0.1), (0.1, 0.1, 0.1, 0.0))
     assert status is Status.RUNNING
-    assert kick.stage is Stage.BEHIND
+    assert kick.stage is KickStage.BEHIND
 
 
 def test_far_from_the_ball_it_no_longer_creeps() -> None:
     kick = lined_up()
     tick(kick, robot(-0.7, 0.0), (0.0, 0.0))
-    assert kick.stage is Stage.BEHIND
+    assert kick.stage is KickStage.BEHIND
 
 
 def test_a_robot_that_keeps_the_ball_off_its_heading_is_kick_locked() -> None:
@@ -101,11 +103,11 @@ def test_a_robot_that_keeps_the_ball_off_its_heading_is_kick_locked() -> None:
     askew = robot(-0.15 * cos(0.2), -0.15 * sin(0.2))
     for _ in range(15):
         tick(kick, askew, (0.0, 0.0))
-    assert kick.stage is not Stage.BEHIND
+    assert kick.stage is not KickStage.BEHIND
     tick(kick, askew, (0.0, 0.0))
-    assert kick.stage is Stage.BEHIND
+    assert kick.stage is KickStage.BEHIND
     tick(kick, robot(-0.11, 0.0), (0.0, 0.0))
-    assert kick.stage is Stage.BEHIND
+    assert kick.stage is KickStage.BEHIND
 
 
 def test_being_behind_the_ball_for_six_cycles_ends_the_lock() -> None:
@@ -117,14 +119,14 @@ def test_being_behind_the_ball_for_six_cycles_ends_the_lock() -> None:
     for _ in range(6):
         tick(kick, robot(-0.1265, 0.0), (0.0, 0.0))
         stages.append(kick.stage)
-    assert Stage.LINE_UP in stages[4:]
-    assert Stage.LINE_UP not in stages[:4]
+    assert KickStage.LINE_UP in stages[4:]
+    assert KickStage.LINE_UP not in stages[:4]
 
 
 def test_a_new_start_forgets_the_last_kick() -> None:
     kick = lined_up()
     kick.start()
-    assert kick.stage is Stage.BEHIND
+    assert kick.stage is KickStage.BEHIND
 
 
 def test_the_way_behind_the_ball_leads_round_it() -> None:

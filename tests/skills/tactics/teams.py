@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from robobt.skills.plan import Plan
+from robobt.skills.plan import TeamPlan
 from robobt.skills.store import TeamStore
 from robobt.skills.tactics.agree import agree
 from robobt.testing import frame, robot
@@ -48,5 +48,5 @@ class Agreement:
         own: tuple[RobotState, ...] = SIX,
         theirs: tuple[RobotState, ...] = THEIRS,
         game: GameState = OPEN,
-    ) -> Plan:
+    ) -> TeamPlan:
         return agree(frame(own[0], ball, own[1:], theirs, time, game), self.team)

@@ -9,7 +9,7 @@ import pytest
 from robobt.skills.aims import Pass
 from robobt.skills.plan import Omitted, Task
 from robobt.skills.tactics.agree import pass_under_way
-from robobt.skills.tactics.attacker import NOBODY, Candidate, choose_attacker
+from robobt.skills.tactics.attacker import NOBODY, AttackerCandidate, choose_attacker
 from robobt.skills.tactics.chances import rate_points
 from robobt.skills.tactics_settings import DEFAULT_TACTICS, TacticsSettings, applied
 from robobt.testing import frame, held, robot
@@ -58,7 +58,9 @@ def test_the_receiver_of_a_pass_takes_it_unless_another_is_there_long_before(
     later: float, attacker: int
 ) -> None:
     numbers = applied(DEFAULT_TACTICS, DIVISION_B, DEFAULT_BALL)
-    candidates = np.array([Candidate(1.0, 0.0, False), Candidate(1.0 + later, 0.0, False)], dtype=float)
+    candidates = np.array(
+        [AttackerCandidate(1.0, 0.0, False), AttackerCandidate(1.0 + later, 0.0, False)], dtype=float
+    )
     assert choose_attacker(candidates, 0.0, 2.0, 1, NOBODY, 0.0, False, numbers) == attacker
 
 

@@ -14,7 +14,7 @@ from robobt.tournament.fixtures import Fixture
 from robobt.tournament.job import Job
 from robobt.tournament.played import PlayedMatch, SideResult
 from robobt.tournament.sequential import SequentialTest, Verdict
-from robobt.tournament.store import Store, StoreError
+from robobt.tournament.store import MatchStore, StoreError
 from robobt.tournament.sweeps.race import Race
 from robobt.tournament.sweeps.search import Candidate, Swept, search
 from robobt.tournament.sweeps.sweep import Sweep, confirm
@@ -120,7 +120,7 @@ def test_the_best_is_confirmed_on_seeds_that_the_search_never_used(tmp_path: Pat
     assert test.rounds < 40
     assert min(match.round for match in fresh.matches) == 20
     assert max(match.round for match in swept.matches) == 19
-    with Store(tmp_path / "a") as store:
+    with MatchStore(tmp_path / "a") as store:
         assert len(store.matches()) == len(swept.matches) + len(fresh.matches)
 
 

@@ -229,10 +229,10 @@ def test_a_tree_of_the_file_can_be_used_again_and_again_and_a_play_too() -> None
             children:
               - SubTree: {tree: wall, params: {place: 1, size: $size}}
               - SubTree: {tree: wall, params: {place: 3}}
-              - SubTree: {tree: goalkeeper, params: {speed: 0.5}}
+              - SubTree: {tree: goalkeeper, params: {speed_factor: 0.5}}
         """
     )
-    children = [Wall(place=1, size=2), Wall(place=3, size=4), PLAYS["goalkeeper"](speed=0.5)]
+    children = [Wall(place=1, size=2), Wall(place=3, size=4), PLAYS["goalkeeper"](speed_factor=0.5)]
     assert same(root, Selector("all", memory=True, children=children))
 
 
@@ -269,6 +269,10 @@ def test_a_text_that_begins_with_a_dollar_is_written_with_two() -> None:
         (
             "play: p\ntree:\n  Wall:\n    place: 0\n    sise: 2",
             "test.yaml:5: Wall: sise: Wall has no such parameter",
+        ),
+        (
+            "play: p\ntree:\n  GoToBall:\n    speed: 0.5",
+            "test.yaml:4: GoToBall: speed: GoToBall has no such parameter; write speed_factor",
         ),
         (
             "play: p\ntree:\n  Wall:\n    place: two",
@@ -350,7 +354,10 @@ def test_a_text_that_begins_with_a_dollar_is_written_with_two() -> None:
             "play: p\ntree: {SubTree: {tree: goalkeeper, params: {pace: 1}}}",
             "goalkeeper has no such parameter",
         ),
-        ("play: p\ntree: {SubTree: {tree: goalkeeper, params: {speed: fast}}}", "goalkeeper: speed"),
+        (
+            "play: p\ntree: {SubTree: {tree: goalkeeper, params: {speed_factor: fast}}}",
+            "goalkeeper: speed_factor",
+        ),
         ("play: p\ntree: {SubTree: {tree: goalkeeper, speed: 1}}", "SubTree has no 'speed'"),
         (
             "play: p\ntrees: {q: {params: {n: {type: int}}, tree: Stop}}\ntree: {SubTree: {tree: q}}",

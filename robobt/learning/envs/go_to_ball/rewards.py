@@ -17,7 +17,7 @@ from robobt.world.compiled import compilable
 from robobt.world.geometry import wrap_angle
 from robobt.world.records import Ball, Robot
 
-_NEAR = 0.2
+_CROWDED_GAP = 0.2
 """Gap from which another robot no longer counts as near [m]."""
 _BELL = 1.0 / sqrt(2.0 * pi)
 
@@ -98,7 +98,7 @@ def reward(
         closing = weights.closing * closing / distance
         terms.closing += closing
         total += closing
-    crowded = weights.near * max(1.0 - gap / _NEAR, 0.0)
+    crowded = weights.near * max(1.0 - gap / _CROWDED_GAP, 0.0)
     terms.time -= weights.time
     terms.near -= crowded
     total -= weights.time + crowded

@@ -14,7 +14,7 @@ from robobt.learning.envs.starts import (
     velocities,
 )
 from robobt.learning.envs.task import FloatArray
-from robobt.learning.opponents.patrols import PATROL, TRAITS
+from robobt.learning.opponents.patrols import PATROL, PATROL_TRAITS
 from robobt.sim.records import RecordArray
 from robobt.world.state import ROBOT_RADIUS
 
@@ -119,5 +119,5 @@ def _place_others(
 def columns_of(settings: GoToBallSettings) -> tuple[str, ...]:
     """Return the columns of a start: robot, the others, ball, and the ways of the others."""
     names = [f"other_{k}_{name}" for k in range(settings.others.count) for name in ROBOT_COLUMNS]
-    traits = [f"other_{k}_{name}" for k in range(settings.others.count) for name in TRAITS]
+    traits = [f"other_{k}_{name}" for k in range(settings.others.count) for name in PATROL_TRAITS]
     return (*ROBOT_COLUMNS, *names, *BALL_COLUMNS, *traits)

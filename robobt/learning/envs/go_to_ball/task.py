@@ -19,11 +19,11 @@ from robobt.learning.envs.go_to_ball.settings import (
 )
 from robobt.learning.envs.go_to_ball.starts import columns_of, go_to_ball_starts
 from robobt.learning.envs.judging import Ledger, Report, begin_tick, end_tick, is_over, parameters, report_of
-from robobt.learning.envs.progress import PROGRESS, Progress
+from robobt.learning.envs.progress import PROGRESS, EpisodeProgress
 from robobt.learning.envs.scripted import BEHIND, drive_and_face, drive_to_shoot, freest_way
 from robobt.learning.envs.starts import split, start_parts
-from robobt.learning.envs.task import Ends, FloatArray, IntArray
-from robobt.learning.opponents.patrols import TRAITS, Patrols
+from robobt.learning.envs.task import EpisodeEnds, FloatArray, IntArray
+from robobt.learning.opponents.patrols import PATROL_TRAITS, Patrols
 from robobt.skills.ball.go_to_ball import GoToBall
 from robobt.skills.base import Skill
 from robobt.world.avoiding import GO_TO_BALL_AMONG_ROBOTS, among_robots_rows
@@ -39,8 +39,8 @@ from robobt.world.geometry import wrap_angle
 from robobt.world.records import BALL, ROBOT, Ball, Robot
 from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS
 
-_RULES = ("distance", "distance_facing", "infrared", "held")
-_DISTANCE, _FACING, _INFRARED = (_RULES.index(rule) for rule in _RULES[:3])
+_CONTACT_RULES = ("distance", "distance_facing", "infrared", "held")
+_DISTANCE_RULE, _FACING_RULE, _INFRARED_RULE = (_CONTACT_RULES.index(rule) for rule in _CONTACT_RULES[:3])
 _KICK_SPEED = 6.0
 """Speed of the kick assumed when fetching the ball in order to shoot [m/s]; that of the shipped Shoot."""
 _FROM_POST = 0.15
@@ -49,11 +49,11 @@ TOUCHING = 2.0 * ROBOT_RADIUS + 0.005
 """Robots whose centres are closer than this touch [m]; contact is checked once per tick."""
 
 
-class _Task(Protocol):
+class _GoToBallJudging(Protocol):
     """Parameters for judging a tick.
 
-    ``rule`` is an index in ``_RULES``, ``dribbler`` says whether it is on, ``to_shoot`` whether the ball is
-    fetched in order to shoot.
+    ``rule`` is an index in ``_CONTACT_RULES``, ``dribbler`` says whether it is on,
+    ``to_shoot`` whether the ball is fetched in order to shoot.
     """
 
     settings: GoToBallSettings
@@ -65,13 +65,13 @@ class _Task(Protocol):
     to_shoot: float
 
 
-_TASK, _TERMS = record_dtype(_Task), record_dtype(GoToBallTerms)
+_GO_TO_BALL_JUDGING, _GO_TO_BALL_TERMS = record_dtype(_GoToBallJudging), record_dtype(GoToBallTerms)
 
 
 class GoToBallTask(ArenaTask):
     """Drive to the ball; :class:`~robobt.learning.envs.GoToBallEnv` is the specification."""
 
-    terms = _TERMS
+    terms = _GO_TO_BALL_TERMS
     Settings = GoToBallSettings
     played_by = "GoToBall"
     observation: ObservationSpec = GO_TO_BALL
@@ -88,12 +88,12 @@ class GoToBallTask(ArenaTask):
         self.start_columns = columns_of(settings)
         super().__init__(settings, n, seed)
         self._judged_by = parameters(
-            _TASK,
+            _GO_TO_BALL_JUDGING,
             settings=settings,
             field=settings.field,
             contact=settings.contact,
             weights=settings.reward,
-            rule=_RULES.index(settings.contact.rule),
+            rule=_CONTACT_RULES.index(settings.contact.rule),
             dribbler=self.action.dribbler,
             to_shoot=settings.to_shoot,
         )
@@ -149,14 +149,14 @@ class GoToBallTask(ArenaTask):
     def begin(self, starts: FloatArray, which: IntArray) -> None:
         """See :meth:`ArenaTask.begin`."""
         _, _, traits = split(starts, self.robots)
-        self._patrols.restart(which, traits.reshape(len(which), self.robots - 1, len(TRAITS)))
+        self._patrols.restart(which, traits.reshape(len(which), self.robots - 1, len(PATROL_TRAITS)))
 
     def oppose(self, commands: FloatArray) -> None:
         """See :meth:`ArenaTask.oppose`."""
         if self.robots > 1:
             self._patrols.decide(self.arenas.robots, commands)
 
-    def _judge(self, actions: FloatArray, rewards: FloatArray, ends: Ends) -> bool:
+    def _judge(self, actions: FloatArray, rewards: FloatArray, ends: EpisodeEnds) -> bool:
         return _judge(self._judged_by, actions, report_of(self.arenas), self._ledger(rewards, ends))
 
     def _optimum(self, starts: FloatArray, which: IntArray) -> FloatArray:
@@ -184,17 +184,17 @@ class GoToBallAmongRobotsTask(GoToBallTask):
 
 @compiled_lean
 def _judge(task_: FloatArray, actions: FloatArray, report_: Report, ledger_: Ledger) -> bool:
-    task: _Task = task_.view(_TASK)[0]
+    task: _GoToBallJudging = task_.view(_GO_TO_BALL_JUDGING)[0]
     arenas, ledger = Report(*report_), Ledger(*ledger_)
     robots, balls = arenas.robots.view(ROBOT)[..., 0], arenas.balls.view(BALL)[..., 0]
-    episodes, terms = ledger.progress.view(PROGRESS)[..., 0], ledger.terms.view(_TERMS)[..., 0]
+    episodes, terms = ledger.progress.view(PROGRESS)[..., 0], ledger.terms.view(_GO_TO_BALL_TERMS)[..., 0]
     any_ended = False
     for i in range(len(balls)):
         if is_over(ledger, i):
             any_ended = True
             continue
         robot, ball, in_mouth = robots[i, 0], balls[i], arenas.contact[i, 0]
-        episode: Progress = episodes[i]
+        episode: EpisodeProgress = episodes[i]
         begin_tick(episode, False)
         episode.ticks_held = episode.ticks_held + 1 if in_mouth and task.dribbler else 0.0
         nearest = inf
@@ -212,15 +212,15 @@ def _judge(task_: FloatArray, actions: FloatArray, report_: Report, ledger_: Led
 
 
 @compilable
-def _reached(task: _Task, robot: Robot, ball: Ball, in_mouth: bool, ticks_held: float) -> bool:
+def _reached(task: _GoToBallJudging, robot: Robot, ball: Ball, in_mouth: bool, ticks_held: float) -> bool:
     """Return whether the robot has reached the ball, whether or not it touches another robot."""
     contact = task.contact
-    if task.rule in (_DISTANCE, _FACING):
+    if task.rule in (_DISTANCE_RULE, _FACING_RULE):
         dx, dy = ball.x - robot.x, ball.y - robot.y
         reached = hypot(dx, dy) <= contact.distance
-        if reached and task.rule == _FACING:
+        if reached and task.rule == _FACING_RULE:
             reached = abs(wrap_angle(atan2(dy, dx) - robot.heading)) <= contact.angle
-    elif task.rule == _INFRARED:
+    elif task.rule == _INFRARED_RULE:
         reached = in_mouth
     else:
         reached = ticks_held >= contact.ticks
@@ -232,7 +232,7 @@ def _reached(task: _Task, robot: Robot, ball: Ball, in_mouth: bool, ticks_held: 
 
 
 @compilable
-def _place(task: _Task, robot: Robot, ball: Ball) -> tuple[float, float, float]:
+def _place(task: _GoToBallJudging, robot: Robot, ball: Ball) -> tuple[float, float, float]:
     """Return the robot's target [m] and its final heading [rad]."""
     if not task.to_shoot:
         return ball.x, ball.y, atan2(ball.y - robot.y, ball.x - robot.x)

@@ -12,18 +12,18 @@ from typing import Protocol
 from pydantic import Field
 
 from robobt.config.validation import Settings
-from robobt.learning.envs.progress import Progress
+from robobt.learning.envs.progress import EpisodeProgress
 from robobt.world.compiled import compilable
 from robobt.world.field import FieldGeometry
 from robobt.world.records import Ball, Robot
 from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS
 
-_SLOW = 1.0
+_SHOT_OVER_SPEED = 1.0
 """A shot that is slower than this is over [m/s]."""
 
-_NEAR = 1.5
+_CLOSE_TO_GOAL = 1.5
 """Distance to the goal below which getting nearer is not rewarded [m]."""
-_SURE = 0.3
+_REACH_UNCERTAINTY = 0.3
 """Width between a shot that is certainly reached and one that certainly is not [m]."""
 
 
@@ -81,7 +81,7 @@ def reward(
     ball: Ball,
     held: bool,
     fired: bool,
-    progress: Progress,
+    progress: EpisodeProgress,
     terms: ScoreTerms,
 ) -> float:
     """Compute the reward of a tick, without the reward for the episode's end.
@@ -105,11 +105,11 @@ def reward(
         terms.kick += earned
         total += earned
         progress.kick_rewarded = 1.0 if earned > 0.0 else 0.0
-    elif held or hypot(ball.vx, ball.vy) < _SLOW:
+    elif held or hypot(ball.vx, ball.vy) < _SHOT_OVER_SPEED:
         progress.kick_rewarded = 0.0
     potential = -weights.approach * hypot(ball.x - robot.x, ball.y - robot.y)
     # The robot's distance counts, because an aimless kick also brings the ball nearer to the goal.
-    potential -= weights.advance * max(hypot(goal_x - robot.x, robot.y), _NEAR)
+    potential -= weights.advance * max(hypot(goal_x - robot.x, robot.y), _CLOSE_TO_GOAL)
     if held:
         potential += weights.facing * (1.0 + cos(atan2(-robot.y, goal_x - robot.x) - robot.heading))
     if progress.kick_rewarded > 0.0:
@@ -150,6 +150,6 @@ def kicked(weights: ScoreReward, field: FieldGeometry, keeper: Robot, ball: Ball
     lacking = beside - ROBOT_RADIUS - BALL_RADIUS
     time = max(ahead, 0.1) / fast
     beyond = lacking - 0.5 * weights.reach * time * time
-    hard = min(max(weights.doubt + beyond / _SURE, 0.0), 1.0)
+    hard = min(max(weights.doubt + beyond / _REACH_UNCERTAINTY, 0.0), 1.0)
     worth: float = weights.aimed + weights.unreached * hard
     return worth

@@ -7,18 +7,27 @@ from math import pi
 import numpy as np
 
 from robobt.learning.envs.score_on_goalkeeper.settings import KeeperSettings, ScoreOnGoalkeeperSettings
-from robobt.learning.envs.starts import BALL_COLUMNS, ROBOT_COLUMNS, start_parts, velocities
+from robobt.learning.envs.starts import BALL_COLUMNS, MOUTH_GAP, ROBOT_COLUMNS, start_parts, velocities
 from robobt.learning.envs.task import FloatArray
-from robobt.learning.opponents.keepers import KEEPER, KINDS, TRAITS, Kind, real_population
+from robobt.learning.opponents.keepers import (
+    GOALKEEPER_KINDS,
+    GOALKEEPER_TRAITS,
+    KEEPER,
+    Kind,
+    real_population,
+)
 from robobt.world.geometry import wrap_angles
 from robobt.world.state import BALL_RADIUS
 
-COLUMNS = (*ROBOT_COLUMNS, *(f"keeper_{name}" for name in ROBOT_COLUMNS), *BALL_COLUMNS, *TRAITS)
+SCORE_START_COLUMNS = (
+    *ROBOT_COLUMNS,
+    *(f"keeper_{name}" for name in ROBOT_COLUMNS),
+    *BALL_COLUMNS,
+    *GOALKEEPER_TRAITS,
+)
 """Columns of a start: attacker, goalkeeper, ball, and the kind of goalkeeper."""
 
-_GAP = 3e-4
-"""Gap between ball and front before the dribbler takes the ball [m]."""
-_BEFORE_AREA = 0.4
+_START_AREA_GAP = 0.4
 """Least distance of starts from the defence area [m]."""
 _INSET = 0.3
 """Least distance of starts from the touch lines [m]."""
@@ -27,11 +36,14 @@ _APART = 0.2
 
 
 def score_starts(settings: ScoreOnGoalkeeperSettings, rng: np.random.Generator, count: int) -> FloatArray:
-    """Draw ``count`` starts (count, 19), columns :data:`COLUMNS`; the ball in the mouth or anywhere."""
+    """Draw ``count`` starts (count, 19) with the columns :data:`SCORE_START_COLUMNS`.
+
+    The ball lies in the mouth or anywhere.
+    """
     starts, field, keepers = settings.starts, settings.field, settings.keepers
-    x = starts.robot_x or (0.0, field.half_length - field.defense_depth - _BEFORE_AREA)
+    x = starts.robot_x or (0.0, field.half_length - field.defense_depth - _START_AREA_GAP)
     y = starts.robot_y or (_INSET - field.half_width, field.half_width - _INSET)
-    rows = np.zeros((count, len(COLUMNS)))
+    rows = np.zeros((count, len(SCORE_START_COLUMNS)))
     far, turned = rng.random(count), rng.uniform(-pi, pi, count)
     if starts.easy:
         far, turned = far**2, turned * rng.random(count)
@@ -50,7 +62,7 @@ def score_starts(settings: ScoreOnGoalkeeperSettings, rng: np.random.Generator, 
     ball_x = np.where(apart < _APART, robot["x"] + way_x / apart * _APART, ball_x)
     ball_y = np.where(apart < _APART, robot["y"] + way_y / apart * _APART, ball_y)
     held = rng.random(count) < starts.held
-    ahead = settings.simulator.body.face + BALL_RADIUS + _GAP
+    ahead = settings.simulator.body.face + BALL_RADIUS + MOUTH_GAP
     ball["x"] = np.where(held, robot["x"] + ahead * np.cos(robot["heading"]), ball_x)
     ball["y"] = np.where(held, robot["y"] + ahead * np.sin(robot["heading"]), ball_y)
     robot["vx"], robot["vy"] = np.where(held, 0.0, drifting)
@@ -63,9 +75,12 @@ def score_starts(settings: ScoreOnGoalkeeperSettings, rng: np.random.Generator, 
 
 
 def keeper_traits(keepers: KeeperSettings, rng: np.random.Generator, count: int) -> FloatArray:
-    """Draw ``count`` goalkeepers (count, columns :data:`~robobt.learning.opponents.keepers.TRAITS`)."""
+    """Draw ``count`` goalkeepers, a row each.
+
+    The columns are :data:`~robobt.learning.opponents.keepers.GOALKEEPER_TRAITS`.
+    """
     keeper = np.empty(count, KEEPER)
-    keeper["keeper_kind"] = rng.choice([KINDS.index(kind) for kind in keepers.kinds], count)
+    keeper["keeper_kind"] = rng.choice([GOALKEEPER_KINDS.index(kind) for kind in keepers.kinds], count)
     keeper["keeper_speed"] = rng.uniform(*keepers.speed, count)
     keeper["keeper_out"] = rng.uniform(*keepers.out, count)
     if "fitted" in keepers.kinds:

@@ -19,12 +19,12 @@ from robobt.learning.envs.judging import (
     parameters,
     report_of,
 )
-from robobt.learning.envs.progress import PROGRESS, Progress
+from robobt.learning.envs.progress import PROGRESS, EpisodeProgress
 from robobt.learning.envs.score_on_goalkeeper.rewards import ScoreReward, ScoreTerms, end_reward, reward
 from robobt.learning.envs.score_on_goalkeeper.settings import ScoreOnGoalkeeperSettings
-from robobt.learning.envs.score_on_goalkeeper.starts import COLUMNS, score_starts
-from robobt.learning.envs.task import BoolArray, Ends, FloatArray, IntArray
-from robobt.learning.opponents.keepers import TRAITS, Keepers
+from robobt.learning.envs.score_on_goalkeeper.starts import SCORE_START_COLUMNS, score_starts
+from robobt.learning.envs.task import BoolArray, EpisodeEnds, FloatArray, IntArray
+from robobt.learning.opponents.keepers import GOALKEEPER_TRAITS, Keepers
 from robobt.world.compiled import compilable, compiled_lean, record_dtype
 from robobt.world.features import ObservationSpec
 from robobt.world.field import FieldGeometry
@@ -37,7 +37,7 @@ _ATTACKER, _KEEPER = 0, 1
 """Indices of the robots."""
 
 
-class _Task(Protocol):
+class _ScoreJudging(Protocol):
     """Parameters for judging a tick."""
 
     settings: ScoreOnGoalkeeperSettings
@@ -45,18 +45,18 @@ class _Task(Protocol):
     weights: ScoreReward
 
 
-_TASK, _TERMS = record_dtype(_Task), record_dtype(ScoreTerms)
+_SCORE_JUDGING, _SCORE_TERMS = record_dtype(_ScoreJudging), record_dtype(ScoreTerms)
 
 
 class ScoreOnGoalkeeperTask(ArenaTask):
     """Get the ball and score; :class:`~robobt.learning.envs.ScoreOnGoalkeeperEnv` is the specification."""
 
-    terms = _TERMS
+    terms = _SCORE_TERMS
     Settings = ScoreOnGoalkeeperSettings
     played_by = "Score"
     observation: ObservationSpec = SCORE_ON_GOALKEEPER
     robots = 2
-    start_columns = COLUMNS
+    start_columns = SCORE_START_COLUMNS
     settings: ScoreOnGoalkeeperSettings
 
     def __init__(
@@ -65,7 +65,9 @@ class ScoreOnGoalkeeperTask(ArenaTask):
         super().__init__(settings, n, seed)
         field = self.settings.field
         self._goal = field.half_length, field.goal_width / 2
-        self._judged_by = parameters(_TASK, settings=self.settings, field=field, weights=self.settings.reward)
+        self._judged_by = parameters(
+            _SCORE_JUDGING, settings=self.settings, field=field, weights=self.settings.reward
+        )
 
     def sample(self, rng: np.random.Generator, count: int) -> FloatArray:
         """See :func:`~robobt.learning.envs.score_on_goalkeeper.starts.score_starts`."""
@@ -102,14 +104,14 @@ class ScoreOnGoalkeeperTask(ArenaTask):
 
     def begin(self, starts: FloatArray, which: IntArray) -> None:
         """See :meth:`ArenaTask.begin`."""
-        self._keepers.restart(which, starts[:, -len(TRAITS) :])
+        self._keepers.restart(which, starts[:, -len(GOALKEEPER_TRAITS) :])
 
     def oppose(self, commands: FloatArray) -> None:
         """See :meth:`ArenaTask.oppose`."""
         arenas = self.arenas
         self._keepers.decide(arenas.robots, arenas.balls, arenas.contact, commands)
 
-    def _judge(self, actions: FloatArray, rewards: FloatArray, ends: Ends) -> bool:  # noqa: ARG002
+    def _judge(self, actions: FloatArray, rewards: FloatArray, ends: EpisodeEnds) -> bool:  # noqa: ARG002
         return _judge(
             self._judged_by, self._keepers.kept, report_of(self.arenas), self._ledger(rewards, ends)
         )
@@ -117,17 +119,17 @@ class ScoreOnGoalkeeperTask(ArenaTask):
 
 @compiled_lean
 def _judge(task_: FloatArray, kept: BoolArray, report_: Report, ledger_: Ledger) -> bool:
-    task: _Task = task_.view(_TASK)[0]
+    task: _ScoreJudging = task_.view(_SCORE_JUDGING)[0]
     arenas, ledger = Report(*report_), Ledger(*ledger_)
     robots, balls = arenas.robots.view(ROBOT)[..., 0], arenas.balls.view(BALL)[..., 0]
-    episodes, terms = ledger.progress.view(PROGRESS)[..., 0], ledger.terms.view(_TERMS)[..., 0]
+    episodes, terms = ledger.progress.view(PROGRESS)[..., 0], ledger.terms.view(_SCORE_TERMS)[..., 0]
     settings = task.settings
     any_ended = False
     for i in range(len(balls)):
         if is_over(ledger, i):
             any_ended = True
             continue
-        episode: Progress = episodes[i]
+        episode: EpisodeProgress = episodes[i]
         robot, keeper, ball = robots[i, _ATTACKER], robots[i, _KEEPER], balls[i]
         held, fired = arenas.contact[i, _ATTACKER], arenas.kicked[i, _ATTACKER]
         begin_tick(episode, fired)
@@ -144,7 +146,9 @@ def _judge(task_: FloatArray, kept: BoolArray, report_: Report, ledger_: Ledger)
 
 
 @compilable
-def _breaks_a_rule(task: _Task, robot: Robot, ball: Ball, held: bool, episode: Progress) -> bool:
+def _breaks_a_rule(
+    task: _ScoreJudging, robot: Robot, ball: Ball, held: bool, episode: EpisodeProgress
+) -> bool:
     """Track the carried distance; return whether the ball is out or the attacker breaks a rule."""
     field, settings = task.field, task.settings
     half_length, half_width = field.length / 2, field.width / 2

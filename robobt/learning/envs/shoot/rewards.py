@@ -12,7 +12,7 @@ from typing import Literal, Protocol
 from pydantic import Field
 
 from robobt.config.validation import Settings
-from robobt.learning.envs.progress import Progress
+from robobt.learning.envs.progress import EpisodeProgress
 from robobt.world.compiled import compilable
 from robobt.world.field import FieldGeometry
 from robobt.world.geometry import wrap_angle
@@ -66,7 +66,7 @@ def reward(
     kick: bool,
     goal: bool,
     out: bool,
-    progress: Progress,
+    progress: EpisodeProgress,
     terms: ShootTerms,
 ) -> float:
     """Compute the reward of a step.

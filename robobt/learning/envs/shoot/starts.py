@@ -8,15 +8,12 @@ import numpy as np
 
 from robobt.learning.envs.settings import Span
 from robobt.learning.envs.shoot.settings import ShootSettings
-from robobt.learning.envs.starts import GIVE_UP, START_COLUMNS, start_parts, velocities
+from robobt.learning.envs.starts import GIVE_UP, MOUTH_GAP, START_COLUMNS, start_parts, velocities
 from robobt.learning.envs.task import FloatArray
 from robobt.sim.arenas import Arenas
 from robobt.sim.records import COMMAND, RecordArray, size
 from robobt.world.records import BALL
 from robobt.world.state import BALL_RADIUS
-
-_GAP = 3e-4
-"""Gap between ball and front before the dribbler takes the ball [m]."""
 
 _POINTS = 17
 """Number of places across the mouth for which the ball's settled position is computed."""
@@ -84,7 +81,7 @@ def _held_ball(settings: ShootSettings) -> tuple[FloatArray, FloatArray]:
     points = np.linspace(*settings.starts.ball_aside, _POINTS)
     simulator = settings.stepped_simulator
     arenas = Arenas(settings.field, [None], simulator, settings.period, len(points))
-    ahead = simulator.body.face + BALL_RADIUS + _GAP
+    ahead = simulator.body.face + BALL_RADIUS + MOUTH_GAP
     balls = np.zeros(len(points), BALL)
     balls["x"], balls["y"] = ahead, points
     arenas.place(np.zeros((len(points), 1, 3)), balls.view(np.float64))

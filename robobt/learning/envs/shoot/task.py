@@ -20,12 +20,12 @@ from robobt.learning.envs.judging import (
     parameters,
     report_of,
 )
-from robobt.learning.envs.progress import PROGRESS, Progress
+from robobt.learning.envs.progress import PROGRESS, EpisodeProgress
 from robobt.learning.envs.scripted import turn_and_kick
 from robobt.learning.envs.shoot.rewards import ShootReward, ShootTerms, reward
 from robobt.learning.envs.shoot.settings import ShootSettings
 from robobt.learning.envs.shoot.starts import shoot_starts
-from robobt.learning.envs.task import Ends, FloatArray
+from robobt.learning.envs.task import EpisodeEnds, FloatArray
 from robobt.skills.ball.kick_to_target import KickToTarget
 from robobt.skills.base import Skill
 from robobt.world.compiled import compilable, compiled_lean, record_dtype
@@ -35,13 +35,13 @@ from robobt.world.records import BALL, ROBOT, Ball, Robot
 from robobt.world.rules import in_area, is_out
 from robobt.world.state import ROBOT_RADIUS
 
-_CAREFUL = 0.9
+_HOLDING_SHARE = 0.9
 """Share of the dribbler's holding force that the script uses for turning."""
 _ROBOT_BACK_LIMIT = -0.2
 """A robot farther back than this ends an episode [m]. Source: the authors' code."""
 
 
-class _Task(Protocol):
+class _ShootJudging(Protocol):
     """Parameters for judging a tick; ``firing_counts`` says whether a kick is the kicker's firing."""
 
     settings: ShootSettings
@@ -57,13 +57,17 @@ class _Action(Protocol):
     kick: float
 
 
-_TASK, _ACTION, _TERMS = record_dtype(_Task), record_dtype(_Action), record_dtype(ShootTerms)
+_SHOOT_JUDGING, _ACTION, _SHOOT_TERMS = (
+    record_dtype(_ShootJudging),
+    record_dtype(_Action),
+    record_dtype(ShootTerms),
+)
 
 
 class ShootTask(ArenaTask):
     """Turn and kick the ball into the goal; see :class:`~robobt.learning.envs.ShootTowardsGoalEnv`."""
 
-    terms = _TERMS
+    terms = _SHOOT_TERMS
     Settings = ShootSettings
     played_by = "Shoot"
     timed = "kick_time"
@@ -76,7 +80,7 @@ class ShootTask(ArenaTask):
         self._goal = field.half_length, field.goal_width / 2
         firing_counts = weights.kick_counts == "fired"
         self._judged_by = parameters(
-            _TASK, settings=settings, field=field, weights=weights, firing_counts=firing_counts
+            _SHOOT_JUDGING, settings=settings, field=field, weights=weights, firing_counts=firing_counts
         )
 
     def sample(self, rng: np.random.Generator, count: int) -> FloatArray:
@@ -104,29 +108,29 @@ class ShootTask(ArenaTask):
         simulator = self.settings.simulator
         dribbler = simulator.dribbler
         held = dribbler.pull if dribbler.kind == "force" else simulator.limits.hold_acceleration
-        pull = np.inf if dribbler.kind == "glue" else _CAREFUL * held
+        pull = np.inf if dribbler.kind == "glue" else _HOLDING_SHARE * held
         return partial(turn_and_kick, scaling=self.action, pull=pull)
 
     def skill(self) -> Skill:
         """See :meth:`ArenaTask.skill`."""
         return KickToTarget(target=self.settings.field.their_goal, kick_speed=self.action.kick_speed)
 
-    def _judge(self, actions: FloatArray, rewards: FloatArray, ends: Ends) -> bool:
+    def _judge(self, actions: FloatArray, rewards: FloatArray, ends: EpisodeEnds) -> bool:
         return _judge(self._judged_by, actions, report_of(self.arenas), self._ledger(rewards, ends))
 
 
 @compiled_lean
 def _judge(task_: FloatArray, actions_: FloatArray, report_: Report, ledger_: Ledger) -> bool:
-    task: _Task = task_.view(_TASK)[0]
+    task: _ShootJudging = task_.view(_SHOOT_JUDGING)[0]
     arenas, ledger = Report(*report_), Ledger(*ledger_)
     robots, balls = arenas.robots.view(ROBOT)[..., 0], arenas.balls.view(BALL)[..., 0]
-    episodes, terms = ledger.progress.view(PROGRESS)[..., 0], ledger.terms.view(_TERMS)[..., 0]
+    episodes, terms = ledger.progress.view(PROGRESS)[..., 0], ledger.terms.view(_SHOOT_TERMS)[..., 0]
     actions, any_ended = actions_.view(_ACTION)[..., 0], False
     for i in range(len(balls)):
         if is_over(ledger, i):
             any_ended = True
             continue
-        episode: Progress = episodes[i]
+        episode: EpisodeProgress = episodes[i]
         robot, ball, fired = robots[i, 0], balls[i], arenas.kicked[i, 0]
         begin_tick(episode, fired)
         goal = goal_of(episode, ball, task.field) > 0
@@ -139,7 +143,7 @@ def _judge(task_: FloatArray, actions_: FloatArray, report_: Report, ledger_: Le
 
 
 @compilable
-def _left(task: _Task, robot: Robot, ball: Ball, episode: Progress) -> bool:
+def _left(task: _ShootJudging, robot: Robot, ball: Ball, episode: EpisodeProgress) -> bool:
     """Return whether robot or ball have left the area of the task."""
     field, settings = task.field, task.settings
     half_length, half_width = field.length / 2, field.width / 2

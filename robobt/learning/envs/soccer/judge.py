@@ -7,10 +7,10 @@ from math import hypot, inf, isnan, nan, sqrt
 from typing import NamedTuple, Protocol
 
 from robobt.learning.envs.judging import Ledger, Report, begin_tick, end_tick, goal_of, is_over
-from robobt.learning.envs.progress import PROGRESS, Progress
+from robobt.learning.envs.progress import PROGRESS, EpisodeProgress
 from robobt.learning.envs.soccer.rewards import (
-    MEMORY,
-    Memory,
+    REWARD_MEMORY,
+    RewardMemory,
     SoccerReward,
     SoccerTerms,
     own_reward,
@@ -29,7 +29,7 @@ from robobt.world.state import ROBOT_RADIUS
 _SCORE, _SAVE, _KEEP, _PASS, _HOLD = (AIMS.index(aim) for aim in ("score", "save", "keep", "pass", "hold"))
 
 
-class Stop(IntEnum):
+class StopReason(IntEnum):
     """Reasons for stopping play: ball out, carried too far, learner in the others' area, double touch."""
 
     NOTHING = 0
@@ -73,7 +73,7 @@ class Mind(Protocol):
 JUDGED, MIND, TERMS = record_dtype(Judged), record_dtype(Mind), record_dtype(SoccerTerms)
 
 
-class Play(NamedTuple):
+class JudgedPlay(NamedTuple):
     """Further arrays that judging reads and fills, for ``n`` arenas with L learners.
 
     ``fouls`` is the team that broke a rule of restarts, 1 blue, -1 yellow, 0 none, and ``stops`` the reason
@@ -101,7 +101,7 @@ class _Arena(NamedTuple):
     kicked: BoolArray  # (R,)
     touch: int
     mind: Mind
-    memories: Records[Memory]  # (L,)
+    memories: Records[RewardMemory]  # (L,)
     terms: SoccerTerms
 
 
@@ -115,7 +115,7 @@ class _Course(NamedTuple):
 
 
 @compiled_lean
-def judge(judged_: FloatArray, report_: Report, play_: Play, ledger_: Ledger) -> bool:
+def judge(judged_: FloatArray, report_: Report, play_: JudgedPlay, ledger_: Ledger) -> bool:
     """Judge a tick of all arenas; return whether any episode has ended.
 
     Args:
@@ -125,9 +125,9 @@ def judge(judged_: FloatArray, report_: Report, play_: Play, ledger_: Ledger) ->
         ledger_: bookkeeping of their episodes, updated.
     """
     judged: Judged = judged_.view(JUDGED)[0]
-    arenas, play, ledger = Report(*report_), Play(*play_), Ledger(*ledger_)
+    arenas, play, ledger = Report(*report_), JudgedPlay(*play_), Ledger(*ledger_)
     robots, balls = arenas.robots.view(ROBOT)[..., 0], arenas.balls.view(BALL)[..., 0]
-    minds, memories = play.minds.view(MIND)[..., 0], play.memories.view(MEMORY)[..., 0]
+    minds, memories = play.minds.view(MIND)[..., 0], play.memories.view(REWARD_MEMORY)[..., 0]
     episodes, terms = ledger.progress.view(PROGRESS)[..., 0], ledger.terms.view(TERMS)[..., 0]
     rules, any_ended = judged.rules, False
     for i in range(len(balls)):
@@ -146,7 +146,7 @@ def judge(judged_: FloatArray, report_: Report, play_: Play, ledger_: Ledger) ->
             memories[i],
             terms[i],
         )
-        episode: Progress = episodes[i]
+        episode: EpisodeProgress = episodes[i]
         begin_tick(episode, _any_learner_kicked(arena))
         goal = goal_of(episode, arena.ball, judged.field)
         arena.mind.goal = goal
@@ -162,7 +162,7 @@ def judge(judged_: FloatArray, report_: Report, play_: Play, ledger_: Ledger) ->
         ended = fault
         if rules.restarts:
             out, ended = False, 1.0 if lost else 0.0
-            play.fouls[i], play.stops[i] = fault, Stop.NOTHING if lost or goal != 0 else stop
+            play.fouls[i], play.stops[i] = fault, StopReason.NOTHING if lost or goal != 0 else stop
         success, failed = _ends(arena, goal, out, ended, passed)
         mean = _reward(arena, _Course(goal, fault, holder, passed), play.shares[i])
         if end_tick(ledger, i, mean, success, failed, judged.settings.time_limit):
@@ -222,18 +222,18 @@ def _fault(
     """
     blue, field = arena.judged.blue, arena.judged.field
     if out:
-        stop = Stop.OUT
+        stop = StopReason.OUT
         if arena.touch >= 0:
             fault = 1.0 if arena.touch < blue else -1.0
     if too_far:
-        fault, stop = 1.0 if holder < blue else -1.0, Stop.CARRIED
+        fault, stop = 1.0 if holder < blue else -1.0, StopReason.CARRIED
     if arena.judged.rules.areas:
         for index in arena.who:
             sign, robot = 1.0 if index < blue else -1.0, arena.robots[index]
             if in_area(
                 sign * robot.x, sign * robot.y, field.length / 2, field.defense_depth, field.defense_width
             ):
-                fault, stop = sign, Stop.IN_AREA
+                fault, stop = sign, StopReason.IN_AREA
     return fault, stop
 
 

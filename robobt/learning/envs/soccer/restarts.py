@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from robobt.learning.envs.judging import Report, fresh, parameters, report_of
-from robobt.learning.envs.soccer.judge import Stop
+from robobt.learning.envs.soccer.judge import StopReason
 from robobt.learning.envs.soccer.settings import SoccerSettings
 from robobt.learning.envs.task import BoolArray, FloatArray, IntArray
 from robobt.learning.opponents.restart_players import RESTART, RestartState
@@ -39,22 +39,22 @@ from robobt.world.rules import (
 )
 from robobt.world.state import BALL_RADIUS, ROBOT_HEIGHT, ROBOT_RADIUS
 
-_KINDS = {
-    Stop.CARRIED: EventKind.BOT_DRIBBLED_BALL_TOO_FAR,
-    Stop.IN_AREA: EventKind.ATTACKER_TOO_CLOSE_TO_DEFENSE_AREA,
-    Stop.TWICE: EventKind.ATTACKER_DOUBLE_TOUCHED_BALL,
+_STOP_EVENTS = {
+    StopReason.CARRIED: EventKind.BOT_DRIBBLED_BALL_TOO_FAR,
+    StopReason.IN_AREA: EventKind.ATTACKER_TOO_CLOSE_TO_DEFENSE_AREA,
+    StopReason.TWICE: EventKind.ATTACKER_DOUBLE_TOUCHED_BALL,
 }
-_AWAY = STOP_DISTANCE + ROBOT_RADIUS
+_OPPONENT_DISTANCE = STOP_DISTANCE + ROBOT_RADIUS
 """Least distance from an opponent's centre to the ball of a restart [m]."""
-_CLEAR = ROBOT_RADIUS + BALL_RADIUS + 0.05
+_PUT_DOWN_DISTANCE = ROBOT_RADIUS + BALL_RADIUS + 0.05
 """Least distance from any robot's centre when the ball is placed [m]."""
-_BESIDE = 2.0 * ROBOT_RADIUS + 0.01
+_ROBOT_SPACING = 2.0 * ROBOT_RADIUS + 0.01
 """Least distance between centres [m]."""
-_TURNS, _REACHES = 24, 8
+_SEARCH_DIRECTIONS, _SEARCH_DISTANCES = 24, 8
 """Number of directions round the ball, and of distances, in which a place is searched."""
 
 
-class _Rules(Protocol):
+class _RestartRules(Protocol):
     """Parameters of restarts.
 
     ``time`` is the number of ticks for taking a restart, ``again`` the ticks after which an opponent too near
@@ -69,12 +69,12 @@ class _Rules(Protocol):
     double_touch: float
 
 
-_RULES = record_dtype(_Rules)
-_IN_PLAY = fresh(RESTART, taker=-1.0)
+_RESTART_RULES = record_dtype(_RestartRules)
+_NO_RESTART = fresh(RESTART, taker=-1.0)
 """State of restarts at the start of an episode."""
 
 
-class _Found(NamedTuple):
+class _RestartArrays(NamedTuple):
     """State of ``n`` arenas with R robots, and the results of a tick."""
 
     states: FloatArray  # (n, size(RESTART))
@@ -101,7 +101,7 @@ class Restarts:
         self._time = round(division_of(field).kick_time / settings.period)
         self._double_touch = settings.rules.double_touch
         self._rules = parameters(
-            _RULES,
+            _RESTART_RULES,
             field=field,
             blue=self._blue,
             time=self._time,
@@ -120,7 +120,7 @@ class Restarts:
 
     def begin(self, which: IntArray) -> None:
         """Begin episodes, with the ball in play."""
-        self.rows[which] = _IN_PLAY
+        self.rows[which] = _NO_RESTART
 
     def watch(self, arenas: Arenas, over: BoolArray) -> BoolArray:
         """Check a tick: fill ``fouls`` and ``stops``; return the objects that were moved, (n, R + 1).
@@ -129,7 +129,7 @@ class Restarts:
             arenas: the arenas after the tick.
             over: (n,) which episodes ended earlier in this decision.
         """
-        found = cast(_Found, (self.rows, self.fouls, self.stops, self._moved))
+        found = cast(_RestartArrays, (self.rows, self.fouls, self.stops, self._moved))
         moved = _watch(self._rules, report_of(arenas), arenas.flight, over, found)
         if moved:
             which, who = np.nonzero(self._moved[:, :-1])
@@ -159,20 +159,20 @@ class Restarts:
         self._moved[which] = True
 
     def _event(self, arena: int, arenas: Arenas, before: Point, carried: Point) -> RefereeEvent:
-        kind, touch, fault = Stop(self.stops[arena]), int(arenas.touch[arena]), self.fouls[arena]
+        kind, touch, fault = StopReason(self.stops[arena]), int(arenas.touch[arena]), self.fouls[arena]
         x, y, _, _ = arenas.balls[arena].tolist()
-        if kind == Stop.OUT:
+        if kind == StopReason.OUT:
             team = None if touch < 0 else Team.BLUE if touch < self._blue else Team.YELLOW
             at, over_goal_line = exit_point(self._field, before, (x, y))
             left = EventKind.BALL_LEFT_FIELD_TOUCH_LINE
             if over_goal_line:
                 left = EventKind.BALL_LEFT_FIELD_GOAL_LINE
             return RefereeEvent(0.0, left, team, None, *at)
-        if kind == Stop.TWICE:
+        if kind == StopReason.TWICE:
             x, y = float(self.states["spot_x"][arena]), float(self.states["spot_y"][arena])
-        elif kind == Stop.CARRIED:
+        elif kind == StopReason.CARRIED:
             x, y = carried
-        return RefereeEvent(0.0, _KINDS[kind], Team.BLUE if fault > 0.0 else Team.YELLOW, None, x, y)
+        return RefereeEvent(0.0, _STOP_EVENTS[kind], Team.BLUE if fault > 0.0 else Team.YELLOW, None, x, y)
 
     def tell(self, seen: FloatArray, which: IntArray, who: NDArray[np.int64]) -> None:
         """Fill in the restart entries of the robots ``who``, in observations (m, L * size) of ``which``."""
@@ -203,15 +203,17 @@ class Restarts:
 
 
 @compiled_lean
-def _watch(rules_: FloatArray, report_: Report, flight_: FloatArray, over: BoolArray, found_: _Found) -> bool:
+def _watch(
+    rules_: FloatArray, report_: Report, flight_: FloatArray, over: BoolArray, found_: _RestartArrays
+) -> bool:
     """See :meth:`Restarts.watch`; return whether any robot was moved."""
-    rules: _Rules = rules_.view(_RULES)[0]
-    arenas, found = Report(*report_), _Found(*found_)
+    rules: _RestartRules = rules_.view(_RESTART_RULES)[0]
+    arenas, found = Report(*report_), _RestartArrays(*found_)
     robots, balls = arenas.robots.view(ROBOT)[..., 0], arenas.balls.view(BALL)[..., 0]
     states, flights = found.states.view(RESTART)[..., 0], flight_.view(FLIGHT)[..., 0]
     any_moved = False
     for i in range(len(balls)):
-        found.fouls[i], found.stops[i], found.moved[i, :] = 0.0, Stop.NOTHING, False
+        found.fouls[i], found.stops[i], found.moved[i, :] = 0.0, StopReason.NOTHING, False
         if over[i]:
             continue
         state: RestartState = states[i]
@@ -236,18 +238,18 @@ def _watch(rules_: FloatArray, report_: Report, flight_: FloatArray, over: BoolA
             if touch != taker:
                 state.taker = -1.0
             elif arenas.contact[i, taker] or _pushes(robots[i, taker], ball, flights[i]):
-                found.fouls[i], found.stops[i] = 1.0 if taker < rules.blue else -1.0, Stop.TWICE
+                found.fouls[i], found.stops[i] = 1.0 if taker < rules.blue else -1.0, StopReason.TWICE
     return any_moved
 
 
 @compiled_inline
-def _put_back(rules: _Rules, state: RestartState, robots: Records[Robot], me: int) -> bool:
+def _put_back(rules: _RestartRules, state: RestartState, robots: Records[Robot], me: int) -> bool:
     """Move a robot that is too near to the others' restart away, at rest; return whether it was moved."""
     robot = robots[me]
     away = hypot(robot.x - state.spot_x, robot.y - state.spot_y)
-    if away >= _AWAY - POINT_TOLERANCE:
+    if away >= _OPPONENT_DISTANCE - POINT_TOLERANCE:
         return False
-    _put_off(rules.field, robots, me, state.spot_x, state.spot_y, _AWAY)
+    _put_off(rules.field, robots, me, state.spot_x, state.spot_y, _OPPONENT_DISTANCE)
     robot.vx = robot.vy = robot.omega = 0.0
     return True
 
@@ -261,7 +263,7 @@ def _pushes(robot: Robot, ball: Ball, flight: Flight) -> bool:
 @compiled_lean
 def _clear(rules_: FloatArray, robots_: FloatArray, team: float, x: float, y: float) -> None:
     """Move robots (R, size(ROBOT)) out of the others' areas, and away from ``team``'s ball at (x, y)."""
-    rules: _Rules = rules_.view(_RULES)[0]
+    rules: _RestartRules = rules_.view(_RESTART_RULES)[0]
     robots, field = robots_.view(ROBOT)[..., 0], rules.field
     half_length, depth = field.length / 2, field.defense_depth
     front = half_length - depth - AREA_DISTANCE - ROBOT_RADIUS
@@ -272,7 +274,7 @@ def _clear(rules_: FloatArray, robots_: FloatArray, team: float, x: float, y: fl
             _put_off(field, robots, r, robot.x, robot.y, 0.0)
     for r in range(len(robots)):
         theirs = team != 0.0 and (r < rules.blue) != (team > 0.0)
-        keep = _AWAY if theirs else _CLEAR
+        keep = _OPPONENT_DISTANCE if theirs else _PUT_DOWN_DISTANCE
         if hypot(robots[r].x - x, robots[r].y - y) < keep:
             _put_off(field, robots, r, x, y, keep)
 
@@ -282,11 +284,11 @@ def _put_off(field: FieldGeometry, robots: Records[Robot], me: int, x: float, y:
     """Move a robot to ``reach`` from (x, y), straight away or as near to that direction as it can stand."""
     half_length, half_width, robot = field.length / 2, field.width / 2, robots[me]
     straight = atan2(robot.y - y, robot.x - x)
-    for step in range(_REACHES):
-        far = reach + step * _BESIDE
-        for turn in range(_TURNS):
+    for step in range(_SEARCH_DISTANCES):
+        far = reach + step * _ROBOT_SPACING
+        for turn in range(_SEARCH_DIRECTIONS):
             side = 1.0 if turn % 2 else -1.0
-            angle = straight + side * ((turn + 1) // 2) * 2.0 * pi / _TURNS
+            angle = straight + side * ((turn + 1) // 2) * 2.0 * pi / _SEARCH_DIRECTIONS
             # Rounding must not put the robot nearer than allowed.
             to_x, to_y = x + (far + 1e-6) * cos(angle), y + (far + 1e-6) * sin(angle)
             if abs(to_x) <= half_length and abs(to_y) <= half_width and _is_free(robots, me, to_x, to_y):
@@ -297,6 +299,6 @@ def _put_off(field: FieldGeometry, robots: Records[Robot], me: int, x: float, y:
 @compiled_inline
 def _is_free(robots: Records[Robot], me: int, x: float, y: float) -> bool:
     for r in range(len(robots)):
-        if r != me and hypot(robots[r].x - x, robots[r].y - y) < _BESIDE:
+        if r != me and hypot(robots[r].x - x, robots[r].y - y) < _ROBOT_SPACING:
             return False
     return True

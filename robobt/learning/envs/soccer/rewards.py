@@ -85,7 +85,7 @@ class SoccerTerms(Protocol):
     crash: float
 
 
-class Memory(Protocol):
+class RewardMemory(Protocol):
     """A learner's state for its reward.
 
     Attributes:
@@ -101,7 +101,7 @@ class Memory(Protocol):
     own: float
 
 
-MEMORY = record_dtype(Memory)
+REWARD_MEMORY = record_dtype(RewardMemory)
 
 
 @compilable
@@ -112,7 +112,7 @@ def team_reward(
     passed: bool,
     holding: bool,
     ball_to_goal: float,
-    memory: Memory,
+    memory: RewardMemory,
     terms: SoccerTerms,
     part: float,
 ) -> float:
@@ -157,7 +157,7 @@ def own_reward(
     ball: Ball,
     fired: bool,
     gap: float,
-    memory: Memory,
+    memory: RewardMemory,
     terms: SoccerTerms,
     part: float,
 ) -> float:

@@ -30,7 +30,7 @@ Aim = Literal["score", "save", "keep", "pass", "hold"]
 AIMS = ("score", "save", "keep", "pass", "hold")
 LEARNER: Role = "learner"
 GOALKEEPER: Role = "goalkeeper"
-PLAY: Role = "play"
+PLAY_ROLE: Role = "play"
 KEEPING = ("goalkeeper", "fitted_goalkeeper", "keeper", "team_keeper", "keeper_2026_11")
 """Plays of goalkeepers."""
 
@@ -143,7 +143,7 @@ class SoccerSettings(TaskSettings):
     def keeping(self) -> tuple[bool, ...]:
         """Which robots start in their goals."""
         plays, blue = iter(self.plays), len(self.blue)
-        by_play = [role == PLAY and next(plays).play in KEEPING for role in self.roles]
+        by_play = [role == PLAY_ROLE and next(plays).play in KEEPING for role in self.roles]
         return tuple(
             role == GOALKEEPER or (index >= blue and by_play[index]) for index, role in enumerate(self.roles)
         )
@@ -185,7 +185,7 @@ class SoccerSettings(TaskSettings):
     def _sensible(self) -> Self:
         if self.action.kind != "drive_and_kick":
             raise ValueError("action: tasks of several robots need drive_and_kick actions")
-        played = self.roles.count(PLAY)
+        played = self.roles.count(PLAY_ROLE)
         if len(self.plays) != played:
             raise ValueError(f"plays: names {len(self.plays)}, for {played} robots with the role play")
         if not self.learners:

@@ -9,16 +9,20 @@ import numpy as np
 from robobt.learning.envs.score_on_goalkeeper.starts import keeper_traits
 from robobt.learning.envs.settings import Span
 from robobt.learning.envs.soccer.settings import GOALKEEPER, SoccerSettings
-from robobt.learning.envs.starts import BALL_COLUMNS, GIVE_UP, ROBOT_COLUMNS, start_parts, velocities
+from robobt.learning.envs.starts import (
+    BALL_COLUMNS,
+    GIVE_UP,
+    MOUTH_GAP,
+    ROBOT_COLUMNS,
+    start_parts,
+    velocities,
+)
 from robobt.learning.envs.task import FloatArray
-from robobt.learning.opponents.keepers import KEEPER, TRAITS
+from robobt.learning.opponents.keepers import GOALKEEPER_TRAITS, KEEPER
 from robobt.sim.records import RecordArray
 from robobt.world.state import BALL_RADIUS
 
-_GAP = 3e-4
-"""Gap between ball and front before the dribbler takes the ball [m]."""
-
-_ASIDE = 0.15
+_PASSING_DISTANCE = 0.15
 """Largest distance beside a robot of a ball that rolls towards it, along each axis [m]."""
 
 
@@ -30,7 +34,7 @@ def columns_of(settings: SoccerSettings) -> tuple[str, ...]:
     return (
         *(f"{name}_{column}" for name in names for column in ROBOT_COLUMNS),
         *BALL_COLUMNS,
-        *(f"{name}_{trait}" for name in keepers for trait in TRAITS),
+        *(f"{name}_{trait}" for name in keepers for trait in GOALKEEPER_TRAITS),
     )
 
 
@@ -63,7 +67,10 @@ def soccer_starts(settings: SoccerSettings, rng: np.random.Generator, count: int
             robot["heading"] = 0.0 if side < 0.0 else pi
     ball["x"], ball["y"] = _free(rng, (starts.ball_x, starts.y), robots, starts.apart)
     ball["vx"], ball["vy"] = velocities(rng, starts.ball_speed, count)
-    coming, aside = rng.random(count) < starts.coming, rng.uniform(-_ASIDE, _ASIDE, (count, 2))
+    coming, aside = (
+        rng.random(count) < starts.coming,
+        rng.uniform(-_PASSING_DISTANCE, _PASSING_DISTANCE, (count, 2)),
+    )
     fielders = [index for index in range(blue) if not keeping[index]]
     if starts.coming > 0.0 and fielders:
         # The ball passes a point beside the robot, like an inexact pass.
@@ -75,7 +82,7 @@ def soccer_starts(settings: SoccerSettings, rng: np.random.Generator, count: int
     by_blue = np.full(count, starts.holder == "blue")
     if starts.holder == "either":
         by_blue = rng.random(count) < 0.5
-    ahead = settings.simulator.body.face + BALL_RADIUS + _GAP
+    ahead = settings.simulator.body.face + BALL_RADIUS + MOUTH_GAP
     for chosen, first, last in ((held & by_blue, 0, blue), (held & ~by_blue, blue, total)):
         players = [index for index in range(first, last) if not keeping[index]]
         if players:

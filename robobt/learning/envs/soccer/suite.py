@@ -10,7 +10,7 @@ from robobt.learning.envs.soccer.rewards import SoccerReward
 from robobt.learning.envs.soccer.settings import (
     GOALKEEPER,
     LEARNER,
-    PLAY,
+    PLAY_ROLE,
     Aim,
     Role,
     SoccerRules,
@@ -23,7 +23,7 @@ from robobt.learning.opponents.play_settings import PlaySettings
 _ATTACKED = SoccerStarts(
     blue_x=(0.0, 3.0), yellow_x=(2.0, 3.2), y=(-2.2, 2.2), ball_x=(0.0, 3.0), held=0.5, apart=0.35
 )
-_IN_PLAY = SoccerStarts(ball_speed=(0.0, 1.0))
+_OPEN_PLAY_STARTS = SoccerStarts(ball_speed=(0.0, 1.0))
 
 
 class ScoreOnGoalkeeperAndDefendersSettings(SoccerSettings):
@@ -69,7 +69,7 @@ class DuelSettings(SoccerSettings):
     blue: tuple[Role, ...] = (LEARNER,)
     yellow: tuple[Role, ...] = (LEARNER,)
     rules: SoccerRules = SoccerRules(held_by=None)
-    starts: SoccerStarts = _IN_PLAY
+    starts: SoccerStarts = _OPEN_PLAY_STARTS
 
 
 class DuelWithScriptSettings(DuelSettings):
@@ -161,7 +161,7 @@ class Small3v3Settings(SoccerSettings):
     keepers: KeeperSettings = KeeperSettings(speed=(1.5, 3.0))
     rules: SoccerRules = SoccerRules(held_by=None, dribbling=1.0)
     reward: SoccerReward = SoccerReward(passed=0.2, shared=0.5)
-    starts: SoccerStarts = _IN_PLAY
+    starts: SoccerStarts = _OPEN_PLAY_STARTS
 
 
 def _task(settings: type[SoccerSettings], played_by: str = "LearnedSkill") -> type[SoccerTask]:
@@ -199,7 +199,7 @@ _SUITE = (
 SUITE: dict[str, type[SoccerSettings]] = {task.__name__: task.Settings for task in _SUITE}
 """The settings of the tasks by their names in Gymnasium."""
 
-SCRIPTS: dict[str, Role] = {
+SCRIPT_ROLES: dict[str, Role] = {
     "score": "attack",
     "save": GOALKEEPER,
     "keep": "pass",
@@ -211,7 +211,7 @@ SCRIPTS: dict[str, Role] = {
 
 def scripted(settings: SoccerSettings) -> SoccerSettings:
     """Return the ``settings`` with the script in place of blue's learners, and attackers for yellow's."""
-    own: Role = "redirect" if settings.rules.longest_hold else SCRIPTS[settings.aim]
+    own: Role = "redirect" if settings.rules.longest_hold else SCRIPT_ROLES[settings.aim]
     return against(instead(settings, own), "attack")
 
 
@@ -233,10 +233,10 @@ def _replaced(settings: SoccerSettings, begin: int, end: int, player: Opponent) 
     """Return the ``settings`` with other robots in the place of the learners from ``begin`` up to ``end``."""
     given, roles, plays = iter(settings.plays), list(settings.roles), []
     for index, role in enumerate(settings.roles):
-        if role == PLAY:
+        if role == PLAY_ROLE:
             plays.append(next(given))
         elif role == LEARNER and begin <= index < end:
-            roles[index] = PLAY if isinstance(player, PlaySettings) else player
+            roles[index] = PLAY_ROLE if isinstance(player, PlaySettings) else player
             if isinstance(player, PlaySettings):
                 plays.append(player)
     blue = len(settings.blue)

@@ -9,17 +9,17 @@ import numpy as np
 from robobt.learning.envs.arena_task import ArenaTask
 from robobt.learning.envs.central import central_view
 from robobt.learning.envs.judging import fresh, parameters, report_of
-from robobt.learning.envs.soccer.judge import JUDGED, MIND, TERMS, Play, judge
+from robobt.learning.envs.soccer.judge import JUDGED, MIND, TERMS, JudgedPlay, judge
 from robobt.learning.envs.soccer.letting_go import let_go
 from robobt.learning.envs.soccer.restarts import Restarts
-from robobt.learning.envs.soccer.rewards import MEMORY
-from robobt.learning.envs.soccer.settings import AIMS, GOALKEEPER, PLAY, SoccerSettings
+from robobt.learning.envs.soccer.rewards import REWARD_MEMORY
+from robobt.learning.envs.soccer.settings import AIMS, GOALKEEPER, PLAY_ROLE, SoccerSettings
 from robobt.learning.envs.soccer.starts import columns_of, soccer_starts
 from robobt.learning.envs.starts import split
-from robobt.learning.envs.task import Ends, FloatArray, IntArray, StepResult
+from robobt.learning.envs.task import EpisodeEnds, FloatArray, IntArray, StepResult
 from robobt.learning.opponents.challengers import Challengers
 from robobt.learning.opponents.field_players import FieldPlayers
-from robobt.learning.opponents.keepers import TRAITS, Keepers
+from robobt.learning.opponents.keepers import GOALKEEPER_TRAITS, Keepers
 from robobt.learning.opponents.plays import PlayedRobots
 from robobt.learning.opponents.restart_players import RestartPlayers
 from robobt.sim.records import RecordArray, size
@@ -27,7 +27,7 @@ from robobt.world.game import GameState
 from robobt.world.team_view import AWAY, team_view, team_view_rows
 
 _NEW_MIND = fresh(MIND, last=-1)
-_NEW_MEMORY = fresh(MEMORY, to_goal=np.nan, to_ball=np.nan)
+_NEW_MEMORY = fresh(REWARD_MEMORY, to_goal=np.nan, to_ball=np.nan)
 
 
 class SoccerTask(ArenaTask):
@@ -147,7 +147,7 @@ class SoccerTask(ArenaTask):
             for index, role in enumerate(settings.roles)
             if role == GOALKEEPER
         ]
-        played = [index for index, role in enumerate(settings.roles) if role == PLAY]
+        played = [index for index, role in enumerate(settings.roles) if role == PLAY_ROLE]
         self._played = PlayedRobots(
             dict(zip(played, settings.plays, strict=True)),
             self.blue,
@@ -160,7 +160,7 @@ class SoccerTask(ArenaTask):
             settings.field, limits, settings.roles, self.blue, settings.player_speed
         )
         self._minds = np.zeros((n, size(MIND)))
-        self._memories = np.zeros((n, len(self.learners), size(MEMORY)))
+        self._memories = np.zeros((n, len(self.learners), size(REWARD_MEMORY)))
         super()._build()
 
     def begin(self, starts: FloatArray, which: IntArray) -> None:
@@ -170,7 +170,7 @@ class SoccerTask(ArenaTask):
         self._restarts.begin(which)
         _, _, traits = split(starts, self.robots)
         for k, keeper in enumerate(self._keepers):
-            keeper.restart(which, traits[:, len(TRAITS) * k : len(TRAITS) * (k + 1)])
+            keeper.restart(which, traits[:, len(GOALKEEPER_TRAITS) * k : len(GOALKEEPER_TRAITS) * (k + 1)])
         self._challengers.restart(which)
         self._played.restart(self.arenas, which)
 
@@ -190,7 +190,7 @@ class SoccerTask(ArenaTask):
             commands[:, self.learners] = self._filled.reshape(self.n, len(self.learners), -1)
             let_go(limit, self._who, self.blue, arenas.robots, arenas.balls, self._minds, commands)
 
-    def _judge(self, actions: FloatArray, rewards: FloatArray, ends: Ends) -> bool:  # noqa: ARG002
+    def _judge(self, actions: FloatArray, rewards: FloatArray, ends: EpisodeEnds) -> bool:  # noqa: ARG002
         arenas, restarts, progress = self.arenas, self._restarts, self._progress
         on = self.settings.rules.restarts
         kept = np.zeros(self.n, dtype=np.bool_)
@@ -201,7 +201,7 @@ class SoccerTask(ArenaTask):
             put = restarts.watch(arenas, ends.over)
             before = np.column_stack((progress["ball_x"], progress["ball_y"]))
         play = (self._who, kept, restarts.fouls, restarts.stops, self._minds, self._memories, self._shares)
-        ended = judge(self._judged_by, report_of(arenas), cast(Play, play), self._ledger(rewards, ends))
+        ended = judge(self._judged_by, report_of(arenas), cast(JudgedPlay, play), self._ledger(rewards, ends))
         if on:
             self._go_on(np.flatnonzero(restarts.stops * ~ends.over), before)
             self._perception.put(arenas.robots, arenas.balls, put)
@@ -217,7 +217,7 @@ class SoccerTask(ArenaTask):
         # No robot has had this ball yet or has brought it nearer to a goal.
         minds["last"][which] = -1
         minds["blue_ticks"][which] = minds["yellow_ticks"][which] = 0.0
-        memories = self._memories.view(MEMORY)
+        memories = self._memories.view(REWARD_MEMORY)
         memories["to_goal"][which] = memories["to_ball"][which] = np.nan
         for axis in "xy":
             self._progress[f"ball_{axis}"][which] = restarts[f"spot_{axis}"][which]

@@ -7,7 +7,7 @@ from math import sqrt
 
 from robobt.match.referee.events import EventKind, RefereeEvent
 from robobt.match.referee.rules.base import Rule, event
-from robobt.match.referee.scene import Phase, Scene
+from robobt.match.referee.scene import PlayPhase, RefereeScene
 from robobt.world.game import RefereeCommand, Team
 from robobt.world.geometry import Point, distance
 from robobt.world.rules import HELD_GAP, hull_gap
@@ -20,18 +20,18 @@ _SPEED_TOLERANCE = 0.01
 class Dribbling(Rule):
     """No robot may carry the ball farther than ``most`` [m], in a straight line, before releasing it."""
 
-    phases = frozenset({Phase.PLAY, Phase.PENALTY})
+    phases = frozenset({PlayPhase.PLAY, PlayPhase.PENALTY})
 
     def __init__(self, most: float) -> None:
         self._most = most
         self._told: RobotId | None = None
 
-    def enter(self, scene: Scene) -> None:
+    def enter(self, scene: RefereeScene) -> None:
         """Measure from where the ball comes into play."""
         scene.touches.carry_anew(scene.frame.ball.position)
         self._told = None
 
-    def check(self, scene: Scene) -> Iterable[RefereeEvent]:
+    def check(self, scene: RefereeScene) -> Iterable[RefereeEvent]:
         """Report a carry once."""
         touches = scene.touches
         carrier = touches.carrier
@@ -48,13 +48,13 @@ class Dribbling(Rule):
 class BallSpeed(Rule):
     """No robot may kick the ball faster than ``most`` [m/s] in space; this includes restarts."""
 
-    phases = frozenset({Phase.KICK, Phase.PLAY, Phase.PENALTY})
+    phases = frozenset({PlayPhase.KICK, PlayPhase.PLAY, PlayPhase.PENALTY})
 
     def __init__(self, most: float) -> None:
         self._most = most + _SPEED_TOLERANCE
         self._fast = False
 
-    def check(self, scene: Scene) -> Iterable[RefereeEvent]:
+    def check(self, scene: RefereeScene) -> Iterable[RefereeEvent]:
         """Report a kick once."""
         ball, last = scene.frame.ball, scene.touches.last
         was_fast = self._fast
@@ -75,7 +75,7 @@ class DoubleTouch(Rule):
     is no offence if a second robot has touched the ball within that distance.
     """
 
-    phases = frozenset({Phase.KICK, Phase.PLAY})
+    phases = frozenset({PlayPhase.KICK, PlayPhase.PLAY})
 
     def __init__(self, in_play_distance: float) -> None:
         self._in_play = in_play_distance
@@ -85,11 +85,11 @@ class DoubleTouch(Rule):
         self._before: RobotId | None = None
         self._touched: set[RobotId] = set()
 
-    def enter(self, scene: Scene) -> None:
+    def enter(self, scene: RefereeScene) -> None:
         """Note the ball's position and then the kicker."""
         self._kicker = None
         last = scene.touches.last
-        if scene.phase is Phase.KICK:
+        if scene.phase is PlayPhase.KICK:
             self._spot, self._team = scene.frame.ball.position, scene.game.restart_team
             self._before, self._touched = last, set()
             return
@@ -100,10 +100,10 @@ class DoubleTouch(Rule):
             self._kicker = last
         self._team = None
 
-    def check(self, scene: Scene) -> Iterable[RefereeEvent]:
+    def check(self, scene: RefereeScene) -> Iterable[RefereeEvent]:
         """Report the second touch once."""
         kicker, touches = self._kicker, scene.touches
-        if scene.phase is Phase.KICK:
+        if scene.phase is PlayPhase.KICK:
             self._touched.update(touches.now)
             # A kicker may touch the ball between two frames without either showing it.
             self._touched.update(

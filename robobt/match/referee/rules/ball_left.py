@@ -6,7 +6,7 @@ from collections.abc import Iterable
 
 from robobt.match.referee.events import EventKind, RefereeEvent
 from robobt.match.referee.rules.base import AGAIN, Rule, team_event
-from robobt.match.referee.scene import Phase, Scene
+from robobt.match.referee.scene import PlayPhase, RefereeScene
 from robobt.world.game import Team
 from robobt.world.geometry import Point
 from robobt.world.rules import exit_point, own_side, scorer
@@ -24,18 +24,18 @@ class BallLeft(Rule):
     event, as in division B.
     """
 
-    phases = frozenset({Phase.PLAY, Phase.PENALTY})
+    phases = frozenset({PlayPhase.PLAY, PlayPhase.PENALTY})
 
     def __init__(self, *, aimless: bool) -> None:
         self._aimless = aimless
         self._told = False
         self._told_at = 0.0
 
-    def enter(self, _: Scene) -> None:
+    def enter(self, _: RefereeScene) -> None:
         """Reset, so that a ball kicked straight out is reported."""
         self._told = False
 
-    def check(self, scene: Scene) -> Iterable[RefereeEvent]:
+    def check(self, scene: RefereeScene) -> Iterable[RefereeEvent]:
         """Report the ball once, as soon as it is out; a ball that bounces back is not reported again."""
         if not scene.out:
             self._told = self._told and scene.time - self._told_at < AGAIN
@@ -45,11 +45,11 @@ class BallLeft(Rule):
         self._told, self._told_at = True, scene.time
         return (self._left(scene),)
 
-    def _left(self, scene: Scene) -> RefereeEvent:
+    def _left(self, scene: RefereeScene) -> RefereeEvent:
         ball, last = scene.frame.ball, scene.touches.last
         team = None if last is None else last.team
         crossing, over_goal_line = exit_point(scene.field, scene.inside.position, ball.position)
-        if scene.phase is Phase.PENALTY and scorer(scene.field, scene.inside, ball) is not scene.penalty:
+        if scene.phase is PlayPhase.PENALTY and scorer(scene.field, scene.inside, ball) is not scene.penalty:
             reason = "the ball has left the field"
             return team_event(
                 scene, EventKind.PENALTY_KICK_FAILED, scene.penalty, None, crossing, reason=reason
@@ -66,7 +66,7 @@ class BallLeft(Rule):
             return team_event(scene, EventKind.AIMLESS_KICK, team, last, crossing, kick_location=where)
         return team_event(scene, EventKind.BALL_LEFT_FIELD_GOAL_LINE, team, last, crossing)
 
-    def _goal(self, scene: Scene, team: Team, crossing: Point) -> RefereeEvent:
+    def _goal(self, scene: RefereeScene, team: Team, crossing: Point) -> RefereeEvent:
         last, touches = scene.touches.last, scene.touches
         return team_event(
             scene,
@@ -78,7 +78,7 @@ class BallLeft(Rule):
             kicking_bot=None if last is None else last.number,
             kick_location=touches.where,
             # In a penalty kick the ball's height is not limited.
-            max_ball_height=None if scene.phase is Phase.PENALTY else touches.highest[team],
+            max_ball_height=None if scene.phase is PlayPhase.PENALTY else touches.highest[team],
             num_robots_by_team=len(scene.team(team)),
             last_touch_by_team=touches.times.get(team),
         )

@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from typing import ClassVar
 
 from robobt.match.referee.events import Detail, EventKind, RefereeEvent
-from robobt.match.referee.scene import Phase, Scene
+from robobt.match.referee.scene import PlayPhase, RefereeScene
 from robobt.world.game import Team
 from robobt.world.geometry import Point
 from robobt.world.state import RobotId
@@ -23,18 +23,18 @@ class Rule(ABC):
         phases: phases in which it is checked.
     """
 
-    phases: ClassVar[frozenset[Phase]]
+    phases: ClassVar[frozenset[PlayPhase]]
 
-    def enter(self, _: Scene) -> None:
+    def enter(self, _: RefereeScene) -> None:
         """Reset its state, because one of its phases begins with this frame."""
         return
 
     @abstractmethod
-    def check(self, scene: Scene) -> Iterable[RefereeEvent]:
+    def check(self, scene: RefereeScene) -> Iterable[RefereeEvent]:
         """Check the present frame, in one of its phases; return the events."""
 
 
-class Cooldown:
+class RepeatLimit:
     """Lets a report through once, and again :data:`AGAIN` seconds later."""
 
     def __init__(self, pause: float = AGAIN) -> None:
@@ -51,7 +51,7 @@ class Cooldown:
 
 
 def event(
-    scene: Scene, kind: EventKind, robot: RobotId | None, at: Point | None = None, **details: Detail
+    scene: RefereeScene, kind: EventKind, robot: RobotId | None, at: Point | None = None, **details: Detail
 ) -> RefereeEvent:
     """Return an event caused by a robot at a place, by default the ball's."""
     team = None if robot is None else robot.team
@@ -59,7 +59,7 @@ def event(
 
 
 def team_event(
-    scene: Scene,
+    scene: RefereeScene,
     kind: EventKind,
     team: Team | None,
     robot: RobotId | None = None,

@@ -8,8 +8,8 @@ from math import atan2, hypot
 from operator import attrgetter
 
 from robobt.match.referee.events import EventKind, RefereeEvent
-from robobt.match.referee.rules.base import Cooldown, Rule, event, team_event
-from robobt.match.referee.scene import Phase, Scene
+from robobt.match.referee.rules.base import RepeatLimit, Rule, event, team_event
+from robobt.match.referee.scene import PlayPhase, RefereeScene
 from robobt.world.game import Team
 from robobt.world.geometry import Point, wrap_angle
 from robobt.world.rules import in_defense_area
@@ -18,7 +18,7 @@ from robobt.world.state import ROBOT_RADIUS, Frame, RobotId, RobotState
 _EQUAL_SPEEDS = 0.3
 """Both robots are at fault in a crash when their speeds differ by less than this. Source: SSL rules [m/s]."""
 
-_TOUCHING = 1.1 * 2.0 * ROBOT_RADIUS
+_ROBOT_TOUCH_DISTANCE = 1.1 * 2.0 * ROBOT_RADIUS
 """Robots whose centres are no farther apart than this touch [m]. Source: AutoReferee."""
 
 _BRAKED = 3.0 * 0.1
@@ -64,15 +64,15 @@ class Crash(Rule):
     the last frame counts, because in the frame of contact the robots may already have stopped each other.
     """
 
-    phases = frozenset(Phase) - {Phase.HALT}
+    phases = frozenset(PlayPhase) - {PlayPhase.HALT}
 
     def __init__(self, limit: float) -> None:
         self._limit = limit
-        self._again = Cooldown()
+        self._again = RepeatLimit()
 
-    def check(self, scene: Scene) -> Iterable[RefereeEvent]:
+    def check(self, scene: RefereeScene) -> Iterable[RefereeEvent]:
         """Report two robots every two seconds."""
-        for blue, yellow in close_pairs(scene.frame, _TOUCHING):
+        for blue, yellow in close_pairs(scene.frame, _ROBOT_TOUCH_DISTANCE):
             pair, speed = (blue, yellow), _closing(blue, yellow)
             if scene.before is not None:
                 earlier = (
@@ -86,7 +86,7 @@ class Crash(Rule):
                 yield _crash(scene, *pair, speed)
 
 
-def _crash(scene: Scene, blue: RobotState, yellow: RobotState, speed: float) -> RefereeEvent:
+def _crash(scene: RefereeScene, blue: RobotState, yellow: RobotState, speed: float) -> RefereeEvent:
     lead = blue.speed - yellow.speed
     at = ((blue.x + yellow.x) / 2, (blue.y + yellow.y) / 2)
     along = atan2(yellow.y - blue.y, yellow.x - blue.x)
@@ -124,16 +124,16 @@ class Pushing(Rule):
     If both push there is no offence.
     """
 
-    phases = frozenset({Phase.PLAY, Phase.PENALTY})
+    phases = frozenset({PlayPhase.PLAY, PlayPhase.PENALTY})
 
     def __init__(self) -> None:
         self._began: dict[Pair, tuple[Point, Point]] = {}
 
-    def enter(self, _: Scene) -> None:
+    def enter(self, _: RefereeScene) -> None:
         """Forget earlier contacts."""
         self._began.clear()
 
-    def check(self, scene: Scene) -> Iterable[RefereeEvent]:
+    def check(self, scene: RefereeScene) -> Iterable[RefereeEvent]:
         """Report a push and reset its count."""
         began: dict[Pair, tuple[Point, Point]] = {}
         for blue, yellow in close_pairs(scene.frame, _PUSHING):

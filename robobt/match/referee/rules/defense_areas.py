@@ -5,16 +5,16 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from robobt.match.referee.events import EventKind, RefereeEvent
-from robobt.match.referee.rules.base import Cooldown, Rule, event, team_event
-from robobt.match.referee.scene import Phase, Scene
+from robobt.match.referee.rules.base import RepeatLimit, Rule, event, team_event
+from robobt.match.referee.scene import PlayPhase, RefereeScene
 from robobt.world.game import Team
 from robobt.world.rules import area_distance, in_defense_area
 from robobt.world.state import ROBOT_RADIUS
 
-_INSIDE = ROBOT_RADIUS - 0.02
+_PARTLY_INSIDE = ROBOT_RADIUS - 0.02
 """An attacker whose centre is this close to the area is partly inside [m]. Source: AutoReferee."""
 
-_SETTLED = 0.5
+_LEAST_PLAY_TIME = 0.5
 """Time in play before this is checked [s]. Source: AutoReferee."""
 
 
@@ -24,15 +24,15 @@ class DefenseAreaTouch(Rule):
     Not checked while both teams touch the ball, or while an opponent touches, and may push, the defender.
     """
 
-    phases = frozenset({Phase.PLAY, Phase.PENALTY})
+    phases = frozenset({PlayPhase.PLAY, PlayPhase.PENALTY})
 
     def __init__(self) -> None:
-        self._again = Cooldown()
+        self._again = RepeatLimit()
 
-    def check(self, scene: Scene) -> Iterable[RefereeEvent]:
+    def check(self, scene: RefereeScene) -> Iterable[RefereeEvent]:
         """Report a robot every two seconds."""
         touching = scene.touches.now
-        if not touching or scene.elapsed < _SETTLED:
+        if not touching or scene.elapsed < _LEAST_PLAY_TIME:
             return
         if any(robot.team is not touching[0].team for robot in touching):
             return
@@ -42,7 +42,7 @@ class DefenseAreaTouch(Rule):
             if robot is None:
                 continue
             team = toucher.team
-            if in_defense_area(field, team.other, robot.x, robot.y, _INSIDE):
+            if in_defense_area(field, team.other, robot.x, robot.y, _PARTLY_INSIDE):
                 kind = EventKind.ATTACKER_TOUCHED_BALL_IN_DEFENSE_AREA
                 gap = area_distance(field, team.other, robot.x, robot.y) - ROBOT_RADIUS
             elif (
@@ -61,18 +61,18 @@ class DefenseAreaTouch(Rule):
 class KeeperHeld(Rule):
     """The ball may stay in a defence area no longer than ``limit`` [s]."""
 
-    phases = frozenset({Phase.PLAY})
+    phases = frozenset({PlayPhase.PLAY})
 
     def __init__(self, limit: float) -> None:
         self._limit = limit
         self._team: Team | None = None
         self._since = 0.0
 
-    def enter(self, _: Scene) -> None:
+    def enter(self, _: RefereeScene) -> None:
         """Count from where the ball comes into play."""
         self._team = None
 
-    def check(self, scene: Scene) -> Iterable[RefereeEvent]:
+    def check(self, scene: RefereeScene) -> Iterable[RefereeEvent]:
         """Report it, and again after the same time."""
         x, y = scene.frame.ball.position
         defender = Team.BLUE if x < 0.0 else Team.YELLOW

@@ -7,11 +7,11 @@ from collections.abc import Iterable
 
 from robobt.match.referee.events import EventKind, RefereeEvent
 from robobt.match.referee.rules.base import Rule, team_event
-from robobt.match.referee.scene import Phase, Scene
+from robobt.match.referee.scene import PlayPhase, RefereeScene
 from robobt.world.game import Team
 from robobt.world.geometry import Point, distance
 
-_REST = 0.01
+_STOPPED_BALL_SPEED = 0.01
 """A ball slower than this has stopped [m/s]."""
 
 _TURN_TIME = 0.2
@@ -25,7 +25,7 @@ class PenaltyKick(Rule):
     over.
     """
 
-    phases = frozenset({Phase.PENALTY})
+    phases = frozenset({PlayPhase.PENALTY})
 
     def __init__(self, in_play_distance: float) -> None:
         self._in_play = in_play_distance
@@ -34,14 +34,14 @@ class PenaltyKick(Rule):
         self._farthest = 0.0
         self._told = False
 
-    def enter(self, scene: Scene) -> None:
+    def enter(self, scene: RefereeScene) -> None:
         """Begin a kick."""
         self._spot = scene.frame.ball.position
         self._past.clear()
         self._farthest = 0.0
         self._told = False
 
-    def check(self, scene: Scene) -> Iterable[RefereeEvent]:
+    def check(self, scene: RefereeScene) -> Iterable[RefereeEvent]:
         """Report a failure once."""
         ball, team = scene.frame.ball, scene.penalty
         if self._told or team is None or distance(ball.position, self._spot) <= self._in_play:
@@ -55,7 +55,7 @@ class PenaltyKick(Rule):
         self._farthest = max(self._farthest, forward)
         reason = None
         if defended:
-            if ball.speed < _REST:
+            if ball.speed < _STOPPED_BALL_SPEED:
                 reason = "the defending team has stopped the ball"
             elif any(vx * ball.vx + vy * ball.vy <= 0.0 for _, vx, vy in self._past):
                 reason = "the defending team has turned the ball"

@@ -6,8 +6,8 @@ from collections.abc import Iterable, Iterator, Mapping
 from math import inf
 
 from robobt.match.referee.events import EventKind, RefereeEvent
-from robobt.match.referee.rules.base import Cooldown, Rule, team_event
-from robobt.match.referee.scene import Phase, Scene
+from robobt.match.referee.rules.base import RepeatLimit, Rule, team_event
+from robobt.match.referee.scene import PlayPhase, RefereeScene
 from robobt.world.game import Team
 from robobt.world.geometry import Point, distance
 
@@ -21,18 +21,18 @@ _TIME_TO_LEAVE = 10.0
 class NoProgress(Rule):
     """The ball must move by ``way`` [m] within ``limit`` [s]."""
 
-    phases = frozenset({Phase.PLAY})
+    phases = frozenset({PlayPhase.PLAY})
 
     def __init__(self, limit: float, way: float) -> None:
         self._limit, self._way = limit, way
         self._place: Point = (0.0, 0.0)
         self._since = 0.0
 
-    def enter(self, scene: Scene) -> None:
+    def enter(self, scene: RefereeScene) -> None:
         """Measure from where the ball comes into play."""
         self._place, self._since = scene.frame.ball.position, scene.time
 
-    def check(self, scene: Scene) -> Iterable[RefereeEvent]:
+    def check(self, scene: RefereeScene) -> Iterable[RefereeEvent]:
         """Report it, and again after the same time."""
         ball, time = scene.frame.ball.position, scene.time
         if distance(ball, self._place) > self._way:
@@ -46,15 +46,15 @@ class NoProgress(Rule):
 class TooManyRobots(Rule):
     """A team may not have too many robots on the field ten seconds of play after its last card."""
 
-    phases = frozenset({Phase.KICK, Phase.PLAY})
+    phases = frozenset({PlayPhase.KICK, PlayPhase.PLAY})
 
     def __init__(self) -> None:
         self._most: tuple[int | None, int | None] = (None, None)
         self._cards: dict[Team, list[float]] = {Team.BLUE: [], Team.YELLOW: []}
         self._played = 0.0
-        self._again = Cooldown()
+        self._again = RepeatLimit()
 
-    def check(self, scene: Scene) -> Iterable[RefereeEvent]:
+    def check(self, scene: RefereeScene) -> Iterable[RefereeEvent]:
         """Report a team every two seconds: its opponents may want play to go on."""
         self._played += scene.frame.period
         blue, yellow = scene.game.blue.max_robots, scene.game.yellow.max_robots
@@ -67,7 +67,7 @@ class TooManyRobots(Rule):
             return ()
         return self._count(scene, {Team.BLUE: blue, Team.YELLOW: yellow})
 
-    def _count(self, scene: Scene, allowed: Mapping[Team, int | None]) -> Iterator[RefereeEvent]:
+    def _count(self, scene: RefereeScene, allowed: Mapping[Team, int | None]) -> Iterator[RefereeEvent]:
         before = dict(zip(allowed, self._most, strict=True))
         self._most = allowed[Team.BLUE], allowed[Team.YELLOW]
         for team, most in allowed.items():

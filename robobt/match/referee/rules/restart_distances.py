@@ -6,8 +6,8 @@ from collections.abc import Iterable
 from math import hypot
 
 from robobt.match.referee.events import EventKind, RefereeEvent
-from robobt.match.referee.rules.base import Cooldown, Rule, event
-from robobt.match.referee.scene import Phase, Scene
+from robobt.match.referee.rules.base import RepeatLimit, Rule, event
+from robobt.match.referee.scene import PlayPhase, RefereeScene
 from robobt.world.game import Team
 from robobt.world.rules import AREA_DISTANCE, area_distance
 from robobt.world.state import ROBOT_RADIUS, RobotId
@@ -28,13 +28,13 @@ class AreaDistance(Rule):
     Checked from ``grace`` [s] after play was stopped; not while an opponent touches the robot.
     """
 
-    phases = frozenset({Phase.STOP, Phase.KICK})
+    phases = frozenset({PlayPhase.STOP, PlayPhase.KICK})
 
     def __init__(self, grace: float) -> None:
         self._grace = grace
-        self._again = Cooldown()
+        self._again = RepeatLimit()
 
-    def check(self, scene: Scene) -> Iterable[RefereeEvent]:
+    def check(self, scene: RefereeScene) -> Iterable[RefereeEvent]:
         """Report a team every two seconds."""
         if scene.elapsed < self._grace:
             return
@@ -64,13 +64,13 @@ class KickPointDistance(Rule):
     Checked from ``grace`` [s] after play was stopped.
     """
 
-    phases = frozenset({Phase.KICK})
+    phases = frozenset({PlayPhase.KICK})
 
     def __init__(self, least: float, grace: float) -> None:
         self._least, self._grace = least, grace
-        self._again = Cooldown()
+        self._again = RepeatLimit()
 
-    def check(self, scene: Scene) -> Iterable[RefereeEvent]:
+    def check(self, scene: RefereeScene) -> Iterable[RefereeEvent]:
         """Report a robot every two seconds."""
         kicking, ball = scene.game.restart_team, scene.frame.ball
         if kicking is None or scene.time - scene.stopped < self._grace:
@@ -94,19 +94,19 @@ class KickPointDistance(Rule):
 class StopSpeed(Rule):
     """Robots may not be faster than ``most`` [m/s] in STOP, checked from ``grace`` [s] after it began."""
 
-    phases = frozenset({Phase.STOP})
+    phases = frozenset({PlayPhase.STOP})
 
     def __init__(self, most: float, grace: float) -> None:
         self._most, self._grace = most, grace
         self._fast: dict[RobotId, float] = {}
         self._told: set[RobotId] = set()
 
-    def enter(self, _: Scene) -> None:
+    def enter(self, _: RefereeScene) -> None:
         """Begin a stop."""
         self._fast.clear()
         self._told.clear()
 
-    def check(self, scene: Scene) -> Iterable[RefereeEvent]:
+    def check(self, scene: RefereeScene) -> Iterable[RefereeEvent]:
         """Report a robot once a stop."""
         if scene.elapsed < self._grace:
             return

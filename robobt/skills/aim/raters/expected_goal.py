@@ -104,7 +104,7 @@ class ExpectedGoal(LearnedRater):
         ball = np.full((len(points), BALL_SIZE), (*origin, me.vx, me.vy), dtype=np.float64)
         heading = shooter.view(ROBOT)["heading"][:, 0]
         heading[:] = directions(me.position, points)
-        if gap < _HELD:
+        if gap < _HELD_BALL_DISTANCE:
             held = ball.view(BALL)[:, 0]
             held["x"], held["y"] = me.x + gap * np.cos(heading), me.y + gap * np.sin(heading)
         rows = np.array([(r.x, r.y, r.heading, r.vx, r.vy, r.omega) for r in ahead], dtype=np.float64)
@@ -119,7 +119,7 @@ class ExpectedGoal(LearnedRater):
         return predicted
 
 
-_HELD = 0.13
+_HELD_BALL_DISTANCE = 0.13
 """A ball closer to the robot's centre than this turns with the robot [m]."""
 
 _SAME = 0.02
