@@ -8,15 +8,15 @@ MOST = 10.0
 """Largest factor; beyond it a command is far beyond every robot's limits."""
 
 
-def check_factor(speed: float) -> float:
+def check_factor(speed_factor: float) -> float:
     """Return the factor itself.
 
     Raises:
         ValueError: the factor is not above 0 and at most :data:`MOST`.
     """
-    if not 0.0 < speed <= MOST:
-        raise ValueError(f"speed must be above 0 and at most {MOST:g}, not {speed}")
-    return speed
+    if not 0.0 < speed_factor <= MOST:
+        raise ValueError(f"speed_factor must be above 0 and at most {MOST:g}, not {speed_factor}")
+    return speed_factor
 
 
 class Pace:
@@ -24,12 +24,12 @@ class Pace:
 
     Args:
         limits: how to drive; None takes the robot's own.
-        speed: factor on the top speed and turning rate, above 0 and at most :data:`MOST`.
+        speed_factor: factor on the top speed and turning rate, above 0 and at most :data:`MOST`.
     """
 
-    def __init__(self, limits: RobotLimits | None, speed: float) -> None:
+    def __init__(self, limits: RobotLimits | None, speed_factor: float) -> None:
         self._limits = limits
-        self._speed = check_factor(speed)
+        self._speed = check_factor(speed_factor)
         self._base: RobotLimits | None = None
         self._scaled: RobotLimits | None = None
 

@@ -21,6 +21,7 @@ _STRONG_EXPECTED_GOAL: Rater = {"name": "expected_goal", "model": "shot_expected
 @formerly(
     model="rater: {name: expected_goal, model: ...}",
     threshold="min_score: ..., and rater: {name: expected_goal, threshold: ...}",
+    speed="speed_factor",
 )
 @PLAYS.register("attack_expected")
 def attack_expected(
@@ -31,7 +32,7 @@ def attack_expected(
     patience: float = 10.0,
     max_distance: float | None = None,
     shot_speed: float | None = None,
-    speed: float = 1.0,
+    speed_factor: float = 1.0,
     dribble_speed: float = 2.0,
 ) -> Behaviour:
     """Shoot where the probability of a goal is high enough; else create such an opening.
@@ -48,7 +49,7 @@ def attack_expected(
         patience: longest time to draw the goalkeeper [s].
         max_distance: no shots from farther than this from the goal [m]; None for no limit.
         shot_speed: kick speed of a shot [m/s]; None for the kick's default.
-        speed: factor on the top speed without the ball.
+        speed_factor: factor on the top speed without the ball.
         dribble_speed: top speed with the ball [m/s].
     """
     return first_of(
@@ -56,7 +57,7 @@ def attack_expected(
         when(
             "score",
             SelectShot(rater=rater, min_score=min_score, max_distance=max_distance),
-            KickToTarget(kick_speed=shot_speed, speed=speed),
+            KickToTarget(kick_speed=shot_speed, speed_factor=speed_factor),
         ),
         when(
             "make an opening",
@@ -69,7 +70,7 @@ def attack_expected(
             "last resort",
             HasBall(),
             SelectShot(rater=rater, min_score=last_resort, max_distance=max_distance),
-            KickToTarget(kick_speed=shot_speed, speed=speed),
+            KickToTarget(kick_speed=shot_speed, speed_factor=speed_factor),
         ),
-        when("get the ball", GoToBall(speed=speed), PickUpBall()),
+        when("get the ball", GoToBall(speed_factor=speed_factor), PickUpBall()),
     )

@@ -21,7 +21,7 @@ from robobt.tree import Behaviour, FailureIsSuccess
 from robobt.tree.parameters import formerly
 
 
-@formerly(tolerance="rater: {name: segment_clearance, tolerance: ...}")
+@formerly(tolerance="rater: {name: segment_clearance, tolerance: ...}", speed="speed_factor")
 @PLAYS.register("attack_main")
 def attack_main(
     *,
@@ -30,7 +30,7 @@ def attack_main(
     max_distance: float | None = None,
     kick: Literal["default", "robobulls"] = "default",
     shot_speed: float | None = None,
-    speed: float = 1.0,
+    speed_factor: float = 1.0,
     dribble_speed: float = 2.0,
     steady: float = 0.1,
 ) -> Behaviour:
@@ -48,7 +48,7 @@ def attack_main(
         kick: "default", or "robobulls" for the paper's baseline, which also gets
             to the ball with RoboBulls' pilot.
         shot_speed: kick speed of a shot [m/s]; None for the kick's default.
-        speed: factor on the top speed without the ball.
+        speed_factor: factor on the top speed without the ball.
         dribble_speed: top speed with the ball [m/s].
         steady: how long a shot or pass must have been open [s]; RoboBulls uses 0.9.
     """
@@ -60,14 +60,14 @@ def attack_main(
             "score",
             FailureIsSuccess("look for a shot", look),
             ShotIsSteady(rise=steady, fall=steady),
-            KickToTarget(style=kick, kick_speed=shot_speed, limits=limits, speed=speed),
+            KickToTarget(style=kick, kick_speed=shot_speed, limits=limits, speed_factor=speed_factor),
         ),
         when(
             "pass",
             FailureIsSuccess("look for a pass", SelectPass()),
             PassIsSteady(rise=steady, fall=steady),
-            KickToTarget(style=kick, limits=limits, speed=speed),
+            KickToTarget(style=kick, limits=limits, speed_factor=speed_factor),
         ),
         when("dribble", HasBall(), BestFieldPosition(), DribbleTo(max_speed=dribble_speed)),
-        when("get the ball", GoToBall(limits=limits, speed=speed), PickUpBall()),
+        when("get the ball", GoToBall(limits=limits, speed_factor=speed_factor), PickUpBall()),
     )

@@ -23,6 +23,7 @@ _STRONG_NETWORK_FILTER: Rater = {"name": "nn_filtered", "model": "shot_nn_strong
     model="rater: {name: nn_filtered, model: ...}",
     threshold="rater: {name: nn_filtered, threshold: ...}",
     tolerance="rater: {name: nn_filtered, tolerance: ...}",
+    speed="speed_factor",
 )
 @PLAYS.register("attack_nn")
 def attack_nn(
@@ -30,7 +31,7 @@ def attack_nn(
     rater: Rater = _STRONG_NETWORK_FILTER,
     max_distance: float | None = None,
     shot_speed: float | None = None,
-    speed: float = 1.0,
+    speed_factor: float = 1.0,
     dribble_speed: float = 2.0,
     steady: float = 0.1,
     feint: bool = True,
@@ -48,7 +49,7 @@ def attack_nn(
             ``shot_nn`` knows the weaker one of the paper's real shots.
         max_distance: no shots from farther than this from the goal [m]; None for no limit.
         shot_speed: kick speed of a shot [m/s]; None for the kick's default.
-        speed: factor on the top speed without the ball.
+        speed_factor: factor on the top speed without the ball.
         dribble_speed: top speed with the ball [m/s].
         steady: how long a shot must have been open before it starts [s].
         feint: draw the goalkeeper; the paper's play does not, and waits at the best place instead.
@@ -60,8 +61,8 @@ def attack_nn(
             "score",
             FailureIsSuccess("look for a shot", SelectShot(rater=rater, max_distance=max_distance)),
             ShotIsSteady(rise=steady, fall=steady),
-            KickToTarget(kick_speed=shot_speed, speed=speed),
+            KickToTarget(kick_speed=shot_speed, speed_factor=speed_factor),
         ),
         when("dribble", HasBall(), BestFieldPosition(), DribbleTo(max_speed=dribble_speed), *draw),
-        when("get the ball", GoToBall(speed=speed), PickUpBall()),
+        when("get the ball", GoToBall(speed_factor=speed_factor), PickUpBall()),
     )

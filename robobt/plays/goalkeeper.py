@@ -20,11 +20,13 @@ from robobt.skills.defence.cover_near_post import CoverNearPost
 from robobt.skills.defence.return_to_goal import ReturnToGoal
 from robobt.skills.defence.shot_coming import ShotComing
 from robobt.tree import Behaviour
+from robobt.tree.parameters import formerly
 from robobt.world.limits import RobotLimits
 
 
+@formerly(speed="speed_factor")
 @PLAYS.register("goalkeeper")
-def goalkeeper(*, speed: float = 1.0, style: Literal["default", "robobulls"] = "default") -> Behaviour:
+def goalkeeper(*, speed_factor: float = 1.0, style: Literal["default", "robobulls"] = "default") -> Behaviour:
     """Keep the ball out of the own goal; the first branch whose condition holds is ticked.
 
     1. A robot aims at the goal: onto the line of the expected shot.
@@ -37,35 +39,42 @@ def goalkeeper(*, speed: float = 1.0, style: Literal["default", "robobulls"] = "
     Source: RoboBulls' published code, Goalie.
 
     Args:
-        speed: factor on its top speed, with and without the ball; 0.5 is the
+        speed_factor: factor on its top speed, with and without the ball; 0.5 is the
             paper's half-speed goalkeeper.
         style: "default" drives within the robot's limits and covers the angle between the posts. "robobulls"
             is the paper's goalkeeper: it covers the near post, drives at most 2.25 m/s, or 1.5 m/s without
             danger, with RoboBulls' accelerations, and clears with RoboBulls' kick.
     """
     if style == "robobulls":
-        return _robobulls(robobulls_limits(1.5 * speed), robobulls_limits(speed))
+        return _robobulls(robobulls_limits(1.5 * speed_factor), robobulls_limits(speed_factor))
     return keep_goal(
-        speed,
-        when("clear", BallRestsInDefense(), where_to_clear(), KickToTarget(speed=speed, goalkeeper=True)),
+        speed_factor,
+        when(
+            "clear",
+            BallRestsInDefense(),
+            where_to_clear(),
+            KickToTarget(speed_factor=speed_factor, goalkeeper=True),
+        ),
     )
 
 
-def keep_goal(speed: float, clear: Behaviour, learned: Behaviour | None = None) -> Behaviour:
+def keep_goal(speed_factor: float, clear: Behaviour, learned: Behaviour | None = None) -> Behaviour:
     """Return the tree of ``goalkeeper`` in its default style.
 
     Args:
-        speed: factor on the top speed.
+        speed_factor: factor on the top speed.
         clear: tree for a ball that rests in the area.
         learned: tree to try first for a ball that does not rest.
     """
     block = (
-        when("aim", BallAimedAtGoal(), BlockShot(speed=speed)),
-        when("shot", ShotComing(margin=0.1), BlockShot(speed=speed)),
+        when("aim", BallAimedAtGoal(), BlockShot(speed_factor=speed_factor)),
+        when("shot", ShotComing(margin=0.1), BlockShot(speed_factor=speed_factor)),
     )
-    take = (when("fetch", BallAtDefenseEdge(), FetchBall(speed=speed)), clear)
+    take = (when("fetch", BallAtDefenseEdge(), FetchBall(speed_factor=speed_factor)), clear)
     first = (*block, *take) if learned is None else (*take, learned, *block)
-    return first_of("goalkeeper", *first, CoverAngle(speed=speed), ReturnToGoal(speed=speed))
+    return first_of(
+        "goalkeeper", *first, CoverAngle(speed_factor=speed_factor), ReturnToGoal(speed_factor=speed_factor)
+    )
 
 
 @PLAYS.register("fitted_goalkeeper")

@@ -15,40 +15,48 @@ from robobt.skills.restarts.go_to_penalty_position import GoToPenaltyPosition
 from robobt.skills.restarts.keep_distance import KeepDistance
 from robobt.skills.stop import Stop
 from robobt.tree import Behaviour, Inverter
+from robobt.tree.parameters import formerly
 from robobt.world.game import Restart
 
 _PENALTY_SHOT_SPEED = 2.5
 """A ball that approaches the goal faster than this counts as kicked [m/s]."""
 
 
+@formerly(speed="speed_factor")
 @PLAYS.register("keeper")
-def keeper(*, speed: float = 1.0) -> Behaviour:
+def keeper(*, speed_factor: float = 1.0) -> Behaviour:
     """Keep goal as ``goalkeeper`` does, within the referee's commands.
 
     Args:
-        speed: factor on its top speed.
+        speed_factor: factor on its top speed.
     """
-    return keep_by_the_rules(speed, goalkeeper(speed=speed))
+    return keep_by_the_rules(speed_factor, goalkeeper(speed_factor=speed_factor))
 
 
-def keep_by_the_rules(speed: float, in_play: Behaviour) -> Behaviour:
+def keep_by_the_rules(speed_factor: float, in_play: Behaviour) -> Behaviour:
     """Follow the referee's commands for a goalkeeper, and tick ``in_play`` while the ball is in play."""
     return first_of(
         "keeper",
         when("halted", IsHalted(), Stop()),
         when("penalty", ball_dead(), IsRestart(kind=Restart.PENALTY), GoToPenaltyPosition(goalkeeper=True)),
-        when("ball is dead", ball_dead(), KeepDistance(goalkeeper=True), CoverAngle(speed=speed)),
-        when("their penalty", IsRestart(kind=Restart.PENALTY, ours=False), save_penalty(speed)),
+        when(
+            "ball is dead", ball_dead(), KeepDistance(goalkeeper=True), CoverAngle(speed_factor=speed_factor)
+        ),
+        when("their penalty", IsRestart(kind=Restart.PENALTY, ours=False), save_penalty(speed_factor)),
         in_play,
     )
 
 
-def save_penalty(speed: float) -> Behaviour:
+def save_penalty(speed_factor: float) -> Behaviour:
     """Come out towards the kicker of a penalty kick; get onto the line of a kicked ball."""
     return first_of(
         "save",
-        when("shot", ShotComing(min_speed=_PENALTY_SHOT_SPEED, margin=0.1), BlockShot(speed=speed)),
-        CloseDown(speed=speed),
+        when(
+            "shot",
+            ShotComing(min_speed=_PENALTY_SHOT_SPEED, margin=0.1),
+            BlockShot(speed_factor=speed_factor),
+        ),
+        CloseDown(speed_factor=speed_factor),
     )
 
 

@@ -12,24 +12,26 @@ from robobt.skills.conditions.ball_in_own_half import BallInOwnHalf
 from robobt.skills.conditions.ball_rests_in_defense import BallRestsInDefense
 from robobt.skills.defence.goalkeeper import Goalkeeper
 from robobt.tree import Behaviour
+from robobt.tree.parameters import formerly
 
 
+@formerly(speed="speed_factor")
 @PLAYS.register("team_keeper")
-def team_keeper(*, speed: float = 1.0, chips: bool = True, policy: str = "") -> Behaviour:
+def team_keeper(*, speed_factor: float = 1.0, chips: bool = True, policy: str = "") -> Behaviour:
     """Keep goal as ``keeper`` does, and chip the ball out of the area if no way along the ground is free.
 
     A ball that rests in the area is kicked to the foremost team-mate that can be reached, else upfield, over
     robots in front of the area.
 
     Args:
-        speed: factor on its top speed.
+        speed_factor: factor on its top speed.
         chips: whether it may chip.
         policy: name or file of a model for Goalkeeper, which keeps goal while the ball is in play in the own
             half and does not have to be cleared; empty for the hand-written goalkeeper alone.
     """
 
     def kick(*, chip: bool = False) -> KickToTarget:
-        return KickToTarget(speed=speed, goalkeeper=True, chip=chip)
+        return KickToTarget(speed_factor=speed_factor, goalkeeper=True, chip=chip)
 
     clear = first_of(
         "clear",
@@ -38,4 +40,4 @@ def team_keeper(*, speed: float = 1.0, chips: bool = True, policy: str = "") -> 
     )
     has_to_clear = when("ball in the area", BallRestsInDefense(), clear)
     learned = when("threat", BallInOwnHalf(), Goalkeeper(policy=policy)) if policy else None
-    return keep_by_the_rules(speed, keep_goal(speed, has_to_clear, learned))
+    return keep_by_the_rules(speed_factor, keep_goal(speed_factor, has_to_clear, learned))

@@ -6,24 +6,26 @@ from dataclasses import dataclass
 
 from robobt.motion.pace import Pace
 from robobt.skills.base import Skill
+from robobt.tree.parameters import formerly
 from robobt.world.limits import RobotLimits
 
 
+@formerly(speed="speed_factor")
 @dataclass(kw_only=True, eq=False, repr=False)
 class DrivingSkill(Skill):
     """A skill that drives by given limits, at a share of their top speed.
 
     Args:
         limits: how to drive; None for the robot's own.
-        speed: factor on the top speed.
+        speed_factor: factor on the top speed.
     """
 
     limits: RobotLimits | None = None
-    speed: float = 1.0
+    speed_factor: float = 1.0
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        self._pace = Pace(self.limits, self.speed)
+        self._pace = Pace(self.limits, self.speed_factor)
 
     @property
     def drive_limits(self) -> RobotLimits:

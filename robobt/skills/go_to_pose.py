@@ -40,7 +40,7 @@ class GoToPose(DrivingSkill):
         tolerance: distance that counts as there [m].
         heading_tolerance: angle that counts as there [rad].
         limits: how to drive; None for the robot's own.
-        speed: factor on the top speed.
+        speed_factor: factor on the top speed.
         avoid_robots, avoid_ball: what the way must avoid.
         goalkeeper: may enter the own defence area.
         policy: name or file of a model for GoToBall that sees the robots in its way

@@ -401,7 +401,7 @@ class TestTree:
 
     def test_it_is_drawn(self, tmp_path: Path):
         svg, dot = tmp_path / "tree.svg", tmp_path / "tree.dot"
-        robobt("show", "goalkeeper:speed=0.5", "--out", svg)
+        robobt("show", "goalkeeper:speed_factor=0.5", "--out", svg)
         robobt("show", "goalkeeper", "--out", dot)
         assert svg.read_text().startswith("<svg")
         assert dot.read_text().startswith("digraph")

@@ -22,16 +22,16 @@ def run(*options: object) -> str:
 
 @pytest.mark.integration
 def test_every_combination_is_played_from_the_same_starts(tmp_path: Path) -> None:
-    plays = ("--blue", "attack_main", "--blue", "attack_main:speed=0.5, rater=open_angle")
-    keepers = ("--yellow", ":speed=1.0", "--yellow", ":speed=0.5")
+    plays = ("--blue", "attack_main", "--blue", "attack_main:speed_factor=0.5, rater=open_angle")
+    keepers = ("--yellow", ":speed_factor=1.0", "--yellow", ":speed_factor=0.5")
     out = tmp_path / "kept"
     given = ("compare", "striker_vs_goalie", *plays, *keepers, *QUICK, "--out", out, "--json")
     said = json.loads(run(*given))
     assert list(said["variants"]) == [
-        "attack_main | :speed=1.0",
-        "attack_main | :speed=0.5",
-        "attack_main:speed=0.5, rater=open_angle | :speed=1.0",
-        "attack_main:speed=0.5, rater=open_angle | :speed=0.5",
+        "attack_main | :speed_factor=1.0",
+        "attack_main | :speed_factor=0.5",
+        "attack_main:speed_factor=0.5, rater=open_angle | :speed_factor=1.0",
+        "attack_main:speed_factor=0.5, rater=open_angle | :speed_factor=0.5",
     ]
     first, *others = said["variants"].values()
     assert first["against_first"] is None
@@ -47,19 +47,24 @@ def test_every_combination_is_played_from_the_same_starts(tmp_path: Path) -> Non
 
 
 def test_the_figures_are_printed_as_tables() -> None:
-    shown = run("compare", "striker_vs_goalie", "--blue", "attack_main", "--blue", ":speed=0.5", *QUICK)
+    shown = run(
+        "compare", "striker_vs_goalie", "--blue", "attack_main", "--blue", ":speed_factor=0.5", *QUICK
+    )
     assert "striker_vs_goalie: 2 trials a variant, seed 1" in shown
-    assert ":speed=0.5, compared with attack_main:" in shown
-    assert "scores with :speed=0.5 but not with attack_main in 0 trials, the other way round in 0." in shown
+    assert ":speed_factor=0.5, compared with attack_main:" in shown
+    assert (
+        "scores with :speed_factor=0.5 but not with attack_main in 0 trials, the other way round in 0."
+        in shown
+    )
 
 
 def test_long_variants_are_told_apart_on_a_narrow_screen(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(console, "width", 80)
     speeds = (
         "--blue",
-        "attack_main:dribble_speed=1.25,speed=0.5",
+        "attack_main:dribble_speed=1.25,speed_factor=0.5",
         "--blue",
-        "attack_main:dribble_speed=1.25,speed=0.75",
+        "attack_main:dribble_speed=1.25,speed_factor=0.75",
     )
     shown = run("compare", "striker_vs_goalie", "--blue", "", *speeds, *QUICK)
     table, *rest = shown.split("compared with as it is:")
@@ -84,7 +89,16 @@ def test_variants_with_names_alike_get_files_of_their_own(tmp_path: Path) -> Non
 
 def test_trials_that_are_the_same_match_are_told() -> None:
     fixed = ("--set", "blue 0.start.position=[-1, 0]", "--set", "ball.position=[0, 0]")
-    shown = run("compare", "striker_vs_goalie", "--blue", ":speed=1", "--blue", ":speed=0.5", *fixed, *QUICK)
+    shown = run(
+        "compare",
+        "striker_vs_goalie",
+        "--blue",
+        ":speed_factor=1",
+        "--blue",
+        ":speed_factor=0.5",
+        *fixed,
+        *QUICK,
+    )
     assert "only 1 of 2 trials differ; vary the starts or add noise" in " ".join(shown.split())
 
 
@@ -98,7 +112,7 @@ def test_trials_that_are_the_same_match_are_told() -> None:
         (("--blue", "attack_man", "--blue", "attack_nn"), "no play is called 'attack_man'"),
         (("--blue", ":sped=1", "--blue", "attack_nn"), "no such parameter"),
         (("--blue", ":speed", "--blue", "attack_nn"), "takes name=value, not 'speed'"),
-        (("--blue", ":speed=1,speed=2", "--blue", "attack_nn"), "a parameter is given twice"),
+        (("--blue", ":speed_factor=1,speed_factor=2", "--blue", "attack_nn"), "a parameter is given twice"),
         (("--set", "ends.time=3"), "ends.time: there is no such field"),
         (("--set", "blue 0=3"), "takes a field or a parameter of the robot"),
         (("--set", "blue 7.play=goalkeeper"), "there is no robot 'blue 7'"),
@@ -132,9 +146,11 @@ def test_a_tree_that_fails_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
 
     monkeypatch.setattr("robobt.skills.aim.select_shot.SelectShot.on_running", bursts)
     shown = " ".join(
-        run("compare", "striker_vs_goalie", "--blue", ":speed=0.5", "--blue", "take_shot", *QUICK).split()
+        run(
+            "compare", "striker_vs_goalie", "--blue", ":speed_factor=0.5", "--blue", "take_shot", *QUICK
+        ).split()
     )
-    assert ":speed=0.5: trees failed in" in shown
+    assert ":speed_factor=0.5: trees failed in" in shown
     assert "ZeroDivisionError: mine" in shown
     assert "take_shot: trees failed in" not in shown
 

@@ -26,11 +26,20 @@ def test_a_runs_policies_are_rated_beside_scripts(tmp_path):
         policy = Actor([1.0] * 23, 4, [4], generator=torch.Generator().manual_seed(seed))
         save_actor(policy, run / ACTOR if seed == 3 else run / PAST / f"{seed:010}.pt")
     told = rate(
-        run, "--past", 2, "--script", "attack", "--play", "attack_main:speed=1.0", "--starts", 3, "--json"
+        run,
+        "--past",
+        2,
+        "--script",
+        "attack",
+        "--play",
+        "attack_main:speed_factor=1.0",
+        "--starts",
+        3,
+        "--json",
     )
     assert told.exit_code == 0, told.output
     found = json.loads(told.stdout)
-    assert set(found["ratings"]) == {"after 0", "after 2", "best", "attack", "attack_main:speed=1.0"}
+    assert set(found["ratings"]) == {"after 0", "after 2", "best", "attack", "attack_main:speed_factor=1.0"}
     assert len(found["encounters"]) == 10
     assert found["task"] == "duel"
     for one in found["ratings"].values():

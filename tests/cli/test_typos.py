@@ -78,7 +78,7 @@ def test_a_wrong_model_is_blamed_on_its_parameter_even_beside_needed_ones(value:
         "from robobt.skills import GoToBall\n"
         "@PLAYS.register('learnt_{0}')\n"
         "def play(*, model: str, speed: float):\n"
-        "    return GoToBall(policy=model, speed=speed)\n".replace("{0}", value.replace(".", "_"))
+        "    return GoToBall(policy=model, speed_factor=speed)\n".replace("{0}", value.replace(".", "_"))
     )
     play = f"learnt_{value.replace('.', '_')}:speed=1,model={value}"
     with temporarily(PLAYS):

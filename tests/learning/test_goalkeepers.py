@@ -64,7 +64,7 @@ def turned(robots: FloatArray, balls: FloatArray) -> tuple[FloatArray, FloatArra
 @pytest.mark.parametrize("limits", [RobotLimits(), LATE], ids=["default", "late"])
 def test_it_decides_as_the_tree_on_random_frames(limits: RobotLimits, speed: float) -> None:
     keepers = Goalkeepers(DIVISION_B, limits, PERIOD, 150, speed)
-    decides_as(keepers, [Alone(goalkeeper(speed=speed)) for _ in range(150)], limits, NAMES)
+    decides_as(keepers, [Alone(goalkeeper(speed_factor=speed)) for _ in range(150)], limits, NAMES)
 
 
 @pytest.mark.parametrize("limits", [RobotLimits(), LATE], ids=["default", "late"])

@@ -84,7 +84,7 @@ def test_a_play_has_its_parameters() -> None:
         return made.arenas.robots[0, 1, :2] - made.arenas.balls[0, :2]
 
     slow, fast = (
-        np.hypot(*after({"play": "attack_main", "params": {"speed": speed}})) for speed in (0.2, 2.0)
+        np.hypot(*after({"play": "attack_main", "params": {"speed_factor": speed}})) for speed in (0.2, 2.0)
     )
     assert slow > fast + 0.5
 
@@ -110,7 +110,10 @@ def test_a_play_takes_its_restart_and_leaves_the_ball_alone_then() -> None:
         ([], "plays: names 0, for 1 robots with the role play"),
         (["nobody"], "plays.0.play: no play is called 'nobody'; there are attack_"),
         ([{"play": "attack_main", "params": {"sped": 1}}], "plays.0.params.sped: attack_main has no such"),
-        ([{"play": "attack_main", "params": {"speed": "x"}}], "plays.0.params.speed: input should be"),
+        (
+            [{"play": "attack_main", "params": {"speed_factor": "x"}}],
+            "plays.0.params.speed_factor: input should be",
+        ),
     ],
 )
 def test_every_such_robot_needs_a_play_that_can_be_built(plays: list[object], said: str) -> None:

@@ -112,7 +112,7 @@ def test_a_changed_parameter_of_a_play_fails_the_case(recording: Path, tmp_path:
     path = save_regression_case(load_recording(recording), BLUE_0, 20, tmp_path / "case.yaml")
     case = load_regression_case(path)
     play = case.recording.header.played["robots"]["blue"][0]
-    play["params"] = {**play["params"], "speed": 0.5}
+    play["params"] = {**play["params"], "speed_factor": 0.5}
     with pytest.raises((RegressionError, RegressionCaseError), match=r"command vx was|params"):
         check_regression_case(case)
 

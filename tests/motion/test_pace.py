@@ -31,5 +31,5 @@ def test_it_follows_a_change_of_the_robot() -> None:
 
 @pytest.mark.parametrize("factor", [0.0, -1.0, 1e308, float("nan"), float("inf")])
 def test_a_factor_no_robot_could_follow_is_refused(factor: float):
-    with pytest.raises(ValueError, match="speed must be above 0 and at most 10"):
+    with pytest.raises(ValueError, match="speed_factor must be above 0 and at most 10"):
         Pace(None, factor)

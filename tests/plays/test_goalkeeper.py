@@ -35,7 +35,7 @@ def playing(
     ball: tuple[float, ...], style: Style = "default", speed: float = 1.0, start: Pose = (-4.35, 0.0, 0.0)
 ) -> Trial:
     settings = "robobulls" if style == "robobulls" else "default"
-    return alone(goalkeeper(style=style, speed=speed), start, ball, settings)
+    return alone(goalkeeper(style=style, speed_factor=speed), start, ball, settings)
 
 
 def case(now: Frame) -> str:

@@ -84,7 +84,7 @@ def test_it_can_face_the_ball_on_its_way() -> None:
 
 def test_speed_and_limits_say_how_fast() -> None:
     me = robot(velocity=(3.0, 0.0, 0.0))
-    half = Alone(GoToPose(target=(4.0, 0.0), speed=0.5))
+    half = Alone(GoToPose(target=(4.0, 0.0), speed_factor=0.5))
     half.tick(frame(me, ball=(0.0, 2.0)))
     assert half.command.vx <= 1.5
     gentle = Alone(GoToPose(target=(4.0, 0.0), limits=RobotLimits(acceleration=1.0)))

@@ -18,7 +18,7 @@ TEAM = """
 entrant: mine
 players:
   - {play: take_shot}
-  - {play: attack_main, params: {speed: 0.5}}
+  - {play: attack_main, params: {speed_factor: 0.5}}
 goalkeeper: {play: goalkeeper}
 """
 
@@ -29,12 +29,12 @@ def plays(scenario: object, team: str) -> list[str]:
 
 def test_a_play_is_what_all_field_players_play() -> None:
     scenario = load_scenario("three_v_three")
-    met = meeting(scenario, read_entrant("take_shot"), read_entrant("attack_main", {"speed": 0.5}))
+    met = meeting(scenario, read_entrant("take_shot"), read_entrant("attack_main", {"speed_factor": 0.5}))
     assert plays(met, "blue") == ["keeper", "take_shot", "take_shot"]
     assert plays(met, "yellow") == ["keeper", "attack_main", "attack_main"]
     assert dict(met.robots)[
         met.robots.of("yellow")[1] and next(r for r, _ in met.robots if str(r) == "yellow 1")
-    ].params == {"speed": 0.5}
+    ].params == {"speed_factor": 0.5}
 
 
 def test_a_file_says_what_each_plays_and_the_last_is_all_that_follow(tmp_path: Path) -> None:

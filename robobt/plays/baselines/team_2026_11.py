@@ -49,6 +49,7 @@ from robobt.skills.restarts.place_ball import PlaceBall
 from robobt.skills.restarts.prepare_restart import PrepareRestart
 from robobt.skills.stop import Stop
 from robobt.tree import Behaviour, Inverter, Selector, Sequence
+from robobt.tree.parameters import formerly
 from robobt.world.game import Restart
 
 UPFIELD_SPEED = 2.0
@@ -254,19 +255,22 @@ def defender_2026_11(
     return GoRound("as in 2026-11", player.defender("defender", _penalty_kick(), wall))
 
 
+@formerly(speed="speed_factor")
 @PLAYS.register("keeper_2026_11")
-def keeper_2026_11(*, speed: float = 1.0) -> Behaviour:
+def keeper_2026_11(*, speed_factor: float = 1.0) -> Behaviour:
     """Keep goal as ``goalkeeper`` does, within the referee's commands.
 
     Args:
-        speed: factor on its top speed.
+        speed_factor: factor on its top speed.
     """
     tree = first_of(
         "keeper",
         when("halted", IsHalted(), Stop()),
         when("penalty", ball_dead(), IsRestart(kind=Restart.PENALTY), GoToPenaltyPosition(goalkeeper=True)),
-        when("ball is dead", ball_dead(), KeepDistance(goalkeeper=True), CoverAngle(speed=speed)),
-        goalkeeper(speed=speed),
+        when(
+            "ball is dead", ball_dead(), KeepDistance(goalkeeper=True), CoverAngle(speed_factor=speed_factor)
+        ),
+        goalkeeper(speed_factor=speed_factor),
     )
     return GoRound("as in 2026-11", tree)
 

@@ -251,5 +251,5 @@ def moved(
         x, y = -x, -y
     turned = atan2(sin(heading + pi), cos(heading + pi)) if flip else atan2(sin(heading), cos(heading))
     start = setup.start.model_copy(update={"position": (x, y), "heading": turned})
-    params = setup.params if speed is None else {**setup.params, "speed": speed}
+    params = setup.params if speed is None else {**setup.params, "speed_factor": speed}
     return setup.model_copy(update={"start": start, "params": params})

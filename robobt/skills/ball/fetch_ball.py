@@ -91,7 +91,7 @@ class FetchBall(DrivingSkill):
 
     Args:
         limits: how to drive without the ball; None for the robot's own.
-        speed: factor on the top speed without the ball.
+        speed_factor: factor on the top speed without the ball.
         before_goal: distance of that place from the goal's centre [m].
     """
 

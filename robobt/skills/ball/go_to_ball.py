@@ -93,7 +93,7 @@ class GoToBall(DrivingSkill):
             from the side opposite to ``store.shot``, else ``store.target``, else
             the attacked goal.
         limits: how to drive; None for the robot's own.
-        speed: factor on the top speed.
+        speed_factor: factor on the top speed.
         goalkeeper: may enter the own defence area.
 
     Raises:

@@ -119,7 +119,7 @@ class Intercept(DrivingSkill):
 
     Args:
         limits: how to drive; None for the robot's own.
-        speed: factor on the top speed.
+        speed_factor: factor on the top speed.
         settle: how long the ball has to stay in the mouth [s].
         goalkeeper: may enter the own defence area.
     """

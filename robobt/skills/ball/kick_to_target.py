@@ -101,7 +101,7 @@ class KickToTarget(DrivingSkill):
         max_turn: turning rate with the ball [rad/s].
         limits: how to drive without the ball; None for the robot's own, or
             RoboBulls' in that style.
-        speed: factor on the top speed.
+        speed_factor: factor on the top speed.
         goalkeeper: may enter the own defence area.
         chip: chip the ball over robots in its way.
         touch_downs: number of the chip's touch-down that is to be at the target.

@@ -34,7 +34,7 @@ class BlockShot(DrivingSkill):
 
     Args:
         limits: how to drive; None for the robot's own.
-        speed: factor on the top speed.
+        speed_factor: factor on the top speed.
         dribbler: whether to catch the ball with the dribbler.
         dive: whether it may drive through the line without braking.
         offset: distance beside the line, to the left in the ball's direction [m].

@@ -25,7 +25,7 @@ class CloseDown(DrivingSkill):
 
     Args:
         limits: how to drive; None for the robot's own.
-        speed: factor on the top speed.
+        speed_factor: factor on the top speed.
         stand_out: largest distance from the goal line [m].
         gap: least distance from the ball to the robot's centre [m].
     """

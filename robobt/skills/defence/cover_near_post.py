@@ -23,7 +23,7 @@ class CoverNearPost(DrivingSkill):
 
     Args:
         limits: how to drive; None for the robot's own.
-        speed: factor on the top speed.
+        speed_factor: factor on the top speed.
         before_goal: distance in front of the goal line; balls farther back count as beside the goal [m].
     """
 

@@ -17,7 +17,7 @@ class ReturnToGoal(DrivingSkill):
 
     Args:
         limits: how to drive; None for the robot's own.
-        speed: factor on the top speed.
+        speed_factor: factor on the top speed.
         before_goal: distance from the goal line [m].
     """
 

@@ -59,7 +59,7 @@ class PlaceBall(DrivingSkill):
 
     Args:
         limits: how to drive without the ball; None for the robot's own.
-        speed: factor on the top speed without the ball.
+        speed_factor: factor on the top speed without the ball.
     """
 
     _there: bool = field(default=False, init=False)

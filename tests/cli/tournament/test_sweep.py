@@ -29,7 +29,7 @@ def _decided(monkeypatch: pytest.MonkeyPatch) -> None:
 
     def decided(_: Job, fixture: Fixture, __: object) -> PlayedMatch:
         name = fixture.blue if "=" in fixture.blue else fixture.yellow
-        wins = float(name.rpartition("speed=")[2]) >= 0.8
+        wins = float(name.rpartition("speed_factor=")[2]) >= 0.8
         return played(*fixture, (1, 0) if (name == fixture.blue) is wins else (0, 1))
 
     monkeypatch.setattr(Job, "play", decided)
@@ -37,14 +37,14 @@ def _decided(monkeypatch: pytest.MonkeyPatch) -> None:
 
 @pytest.mark.usefixtures("_decided")
 def test_candidates_are_tried_told_and_the_best_is_confirmed(tmp_path: Path) -> None:
-    given = ("attack_main", "--vary", "speed=0.5:1.0", *QUICK, "--sprt", "0", "100")
+    given = ("attack_main", "--vary", "speed_factor=0.5:1.0", *QUICK, "--sprt", "0", "100")
     shown = invoke(*given, "--out", tmp_path / "a.sqlite", "--json")
     assert shown.exit_code == 0, shown.output
     said = json.loads(shown.stdout)
     assert [one["number"] for one in said["candidates"]] == list(range(6))
     assert {one["score"] for one in said["candidates"]} == {0.0, 1.0}
-    assert said["best"]["name"].startswith("attack_main:speed=0.")
-    assert said["best"]["params"]["speed"] >= 0.8
+    assert said["best"]["name"].startswith("attack_main:speed_factor=0.")
+    assert said["best"]["params"]["speed_factor"] >= 0.8
     assert said["sprt"]["verdict"] == "better"
     table = invoke(*given, "--out", tmp_path / "a.sqlite")
     assert table.exit_code == 0
@@ -54,9 +54,11 @@ def test_candidates_are_tried_told_and_the_best_is_confirmed(tmp_path: Path) -> 
 
 @pytest.mark.usefixtures("_decided")
 def test_where_no_candidate_does_better_nothing_is_tested() -> None:
-    shown = invoke("attack_main", "--vary", "speed=0.5:0.6", *QUICK, "--json")
+    shown = invoke("attack_main", "--vary", "speed_factor=0.5:0.6", *QUICK, "--json")
     assert (shown.exit_code, json.loads(shown.stdout)["sprt"]) == (1, None)
-    assert "No candidate did better." in invoke("attack_main", "--vary", "speed=0.5:0.6", *QUICK).output
+    assert (
+        "No candidate did better." in invoke("attack_main", "--vary", "speed_factor=0.5:0.6", *QUICK).output
+    )
 
 
 @pytest.mark.parametrize(
@@ -79,25 +81,31 @@ def test_what_goes_wrong_in_candidates_is_told(
 @pytest.mark.integration
 def test_a_sweep_is_played() -> None:
     quick = (*QUICK, "--set", "ends.time_limit=0.3", "--candidates", "2", "--rounds", "1")
-    shown = invoke("attack_main:speed=0.5", "--vary", "rater=open_angle,nn_filtered", *quick, "--json")
+    shown = invoke("attack_main:speed_factor=0.5", "--vary", "rater=open_angle,nn_filtered", *quick, "--json")
     said = json.loads(shown.stdout)
-    names = {f"attack_main:speed=0.5,rater={rater}" for rater in ("open_angle", "nn_filtered")}
+    names = {f"attack_main:speed_factor=0.5,rater={rater}" for rater in ("open_angle", "nn_filtered")}
     assert {one["name"] for one in said["candidates"]} <= names
-    assert said["against"] == "attack_main:speed=0.5"
+    assert said["against"] == "attack_main:speed_factor=0.5"
     assert {one["rounds"] for one in said["candidates"]} == {1}
 
 
 @pytest.mark.parametrize(
     ("options", "problem"),
     [
-        (("attack_mian", "--vary", "speed=1,2"), "no play is called 'attack_mian'"),
-        (("mine.yaml", "--vary", "speed=1,2"), "mine.yaml is a file; a sweep tunes a play by its name"),
-        (("my_plays.py", "--vary", "speed=1,2"), "my_plays.py: cannot be read"),
+        (("attack_mian", "--vary", "speed_factor=1,2"), "no play is called 'attack_mian'"),
+        (
+            ("mine.yaml", "--vary", "speed_factor=1,2"),
+            "mine.yaml is a file; a sweep tunes a play by its name",
+        ),
+        (("my_plays.py", "--vary", "speed_factor=1,2"), "my_plays.py: cannot be read"),
         (("attack_main", "--vary", "sped=1,2"), "sped: attack_main has no such parameter"),
-        (("attack_main", "--vary", "speed=2:1"), "speed: a range goes from a number to a larger one"),
+        (
+            ("attack_main", "--vary", "speed_factor=2:1"),
+            "speed_factor: a range goes from a number to a larger one",
+        ),
         (("attack_main", "--vary", "rater=nn_filtered,nm"), "no shot rater is called 'nm'"),
-        (("attack_main", "--vary", "speed=1,2", "--against", "attack_mian"), "no play is called"),
-        (("attack_main", "--vary", "speed=1,2", "--sprt", "5", "0"), "elo0 must be below elo1"),
+        (("attack_main", "--vary", "speed_factor=1,2", "--against", "attack_mian"), "no play is called"),
+        (("attack_main", "--vary", "speed_factor=1,2", "--sprt", "5", "0"), "elo0 must be below elo1"),
     ],
 )
 def test_what_cannot_be_swept_is_told_in_one_line(options: tuple[str, ...], problem: str) -> None:
@@ -117,7 +125,7 @@ def test_ctrl_c_while_nothing_is_played_tells_what_was_kept(
         raise KeyboardInterrupt
 
     monkeypatch.setattr(where, stopped)
-    given = ("attack_main", "--vary", "speed=0.5,0.9", *QUICK)
+    given = ("attack_main", "--vary", "speed_factor=0.5,0.9", *QUICK)
     shown = invoke(*given, "--out", tmp_path / "a.sqlite", "--json")
     assert shown.exit_code == 130
     assert "matches; the same command goes on with it" in " ".join(shown.stderr.split())

@@ -24,16 +24,27 @@ def plain(shown: Result) -> str:
 @pytest.mark.integration
 def test_a_tournament_is_played_kept_told_and_reported(tmp_path: Path) -> None:
     store, page = tmp_path / "night.sqlite", tmp_path / "night.html"
-    given = ("take_shot", "attack_main:speed=0.5,rater=open_angle", "attack_nn", *QUICK, "--out", store)
+    given = (
+        "take_shot",
+        "attack_main:speed_factor=0.5,rater=open_angle",
+        "attack_nn",
+        *QUICK,
+        "--out",
+        store,
+    )
     shown = invoke(*given, "--html", page, "--record", "worst", "--json")
     assert shown.exit_code == 0, shown.output
     said = json.loads(shown.stdout)
     assert (said["matches"], said["distinct"], said["failed"]) == (6, 6, {})
-    assert set(said["standings"]) == {"take_shot", "attack_main:speed=0.5,rater=open_angle", "attack_nn"}
+    assert set(said["standings"]) == {
+        "take_shot",
+        "attack_main:speed_factor=0.5,rater=open_angle",
+        "attack_nn",
+    }
     assert [(one["first"], one["matches"]) for one in said["encounters"]] == [
         ("take_shot", 2),
         ("take_shot", 2),
-        ("attack_main:speed=0.5,rater=open_angle", 2),
+        ("attack_main:speed_factor=0.5,rater=open_angle", 2),
     ]
     assert page.read_text().count(".recordings/") == 2
     again = invoke(*given)
@@ -130,7 +141,7 @@ def test_a_folder_in_the_place_of_a_report_is_refused_before_the_first_match(tmp
         (("take_shot", "take_shot"), "two entrants are called 'take_shot'"),
         (("take_shot", "take_sht"), "no play is called 'take_sht'"),
         (("take_shot", "attack_main:sped=1"), "no such parameter"),
-        (("take_shot", "attack_main:speed="), "speed"),
+        (("take_shot", "attack_main:speed_factor="), "speed"),
         (("take_shot", "gone.yaml"), "gone.yaml: cannot be read"),
         (("take_shot", "attack_nn", "--scenario", "gone"), "no such file or bundled scenario"),
         (("take_shot", "attack_nn", "--scenario", "table4_trial1"), "where yellow has no robot"),

@@ -35,5 +35,5 @@ def test_a_team_plays_something_else_but_for_its_goalkeeper() -> None:
     plays = [robot.play for robot in other.robots.yellow]
     assert plays == ["team_keeper", *["field_player"] * 5]
     assert other.robots.blue == scenario.robots.blue
-    alone = with_team(load_scenario("striker_vs_goalie"), Team.YELLOW, None, {"speed": 0.5})
-    assert alone.robots.yellow[0].params["speed"] == 0.5
+    alone = with_team(load_scenario("striker_vs_goalie"), Team.YELLOW, None, {"speed_factor": 0.5})
+    assert alone.robots.yellow[0].params["speed_factor"] == 0.5

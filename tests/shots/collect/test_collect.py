@@ -200,7 +200,7 @@ def test_the_papers_protocol_has_its_own_number_of_shots(tmp_path: Path):
 def test_the_papers_shots_are_attack_mains_with_its_tolerances():
     attempt = paper_attempt(CollectionSettings(protocol="paper"), 1)
     blue, yellow = attempt.scenario.robots.blue[0], attempt.scenario.robots.yellow[0]
-    assert (blue.play, yellow.params["speed"]) == ("attack_main", 0.5)
+    assert (blue.play, yellow.params["speed_factor"]) == ("attack_main", 0.5)
     assert blue.params["rater"] == {"name": "segment_clearance", "tolerance": attempt.labels["tolerance"]}
     assert attempt.labels["tolerance"] == 0.3645
     still = paper_attempt(CollectionSettings(protocol="paper"), 5)

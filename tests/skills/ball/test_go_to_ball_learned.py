@@ -49,7 +49,7 @@ def test_it_keeps_the_limits_it_is_given(model: str) -> None:
     alone.tick(frame(robot(), ball=(1.0, 1.0)))
     assert hypot(alone.command.vx, alone.command.vy) == pytest.approx(0.7)
     assert alone.command.omega == 0.5
-    alone = Alone(GoToBall(policy=model, limits=RobotLimits(max_speed=2.0), speed=0.5))
+    alone = Alone(GoToBall(policy=model, limits=RobotLimits(max_speed=2.0), speed_factor=0.5))
     alone.tick(frame(robot(), ball=(1.0, 1.0)))
     assert hypot(alone.command.vx, alone.command.vy) == pytest.approx(1.0)
 

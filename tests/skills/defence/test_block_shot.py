@@ -37,7 +37,7 @@ def test_it_takes_the_shortest_way_to_the_line() -> None:
 def test_at_half_speed_it_gets_less_far() -> None:
     fast, slow = (
         after(0.8, BlockShot(limits=ROBOBULLS_LIMITS)),
-        after(0.8, BlockShot(limits=ROBOBULLS_LIMITS, speed=0.3)),
+        after(0.8, BlockShot(limits=ROBOBULLS_LIMITS, speed_factor=0.3)),
     )
     assert slow.y < fast.y - 0.05
     assert abs(slow.vy) <= 0.3 * ROBOBULLS_LIMITS.max_speed + 1e-6
