@@ -15,7 +15,7 @@ unexport PYTHONDONTWRITEBYTECODE
 
 match: $(PLAYING)
 	@mkdir -p out
-	$(BIN)/robobt match striker_vs_goalie --trials 20 --record out/match.html
+	$(BIN)/robobt match striker_vs_goalkeeper --trials 20 --record out/match.html
 	@echo "Open out/match.html in a browser to watch the first trial."
 
 test: $(INSTALLED)
@@ -45,7 +45,7 @@ notebooks: $(INSTALLED)
 # The animations in README and docs, and with Chromium the pictures of the live page.
 pictures: $(INSTALLED)
 	@mkdir -p out
-	$(BIN)/robobt match striker_vs_goalie --trials 1 --record out/striker.robobt.arrows
+	$(BIN)/robobt match striker_vs_goalkeeper --trials 1 --record out/striker.robobt.arrows
 	$(BIN)/robobt show out/striker.robobt.arrows --out docs/images/striker.gif --robot "blue 0"
 	$(BIN)/robobt match six_v_six --trials 1 --set ends.time_limit=30 --record out/six.robobt.arrows
 	$(BIN)/robobt show out/six.robobt.arrows --out docs/images/six.gif --from 10 --to 20

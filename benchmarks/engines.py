@@ -16,7 +16,7 @@ from robobt.worlds import sim_world
 
 
 def engines(
-    scenario: Bundled = "striker_vs_goalie",
+    scenario: Bundled = "striker_vs_goalkeeper",
     engine: Annotated[str, typer.Option(help="The engine that is compared with local processes.")] = "ray",
     trials: Annotated[int, typer.Option("--trials", "-n", min=2, max=100_000)] = 1000,
     workers: Annotated[int, typer.Option("--workers", "-w", min=2, max=256)] = 2,

@@ -73,7 +73,7 @@ def tournament(
     """
 
     teams = tuple([read_entrant(name) for name in ("take_shot", "attack_main")])
-    plan = Plan(load_scenario("striker_vs_goalie"), teams, rounds=-(-results // 2), seed=1)
+    plan = Plan(load_scenario("striker_vs_goalkeeper"), teams, rounds=-(-results // 2), seed=1)
     with tempfile.TemporaryDirectory() as folder, Progress("results", 2 * plan.rounds) as progress:
         with plan.open_store(Path(folder) / "driver.sqlite") as store:
             begun = perf_counter()

@@ -8,7 +8,7 @@ The worlds are presets of the simulator, ``noisy`` the default one with ER-Force
 With an address it is that world alone, in which a simulator has to run (docs/league.md). A model for Score or
 Duel attacks beside ``attack_expected``, in the scenario ``score_on_goalkeeper``, ``score_on_defender``,
 ``score_on_two_defenders`` or ``duel``, as it has learned; one for Goalkeeper keeps goal against
-``attack_expected`` beside ``team_keeper``. Printed are the trials with a goal, with Wilson's 95 % interval,
+``attack_expected`` beside ``team_goalkeeper``. Printed are trials with a goal, with Wilson's 95 % interval,
 then what the model scores more or lets in more than the play in the same world, and than itself in the first,
 in points, paired by trial.
 """
@@ -89,8 +89,8 @@ def variants(model: str, against: str = "") -> dict[str, tuple[str, str]]:
     """
     skill = read_fitting_model(model, kind="policy").card.skill
     if skill == "Goalkeeper":
-        keeper = f"team_keeper:policy={model}"
-        return {"team_keeper": (against, "team_keeper"), "Goalkeeper": (against, keeper)}
+        keeper = f"team_goalkeeper:policy={model}"
+        return {"team_goalkeeper": (against, "team_goalkeeper"), "Goalkeeper": (against, keeper)}
     if skill != "Duel":
         read_fitting_model(model, skill="Score")
     return {

@@ -10,7 +10,7 @@ from robobt.skills import RATERS
 
 TRIALS = 40
 
-scenario = robobt.load_scenario("striker_vs_goalie")
+scenario = robobt.load_scenario("striker_vs_goalkeeper")
 print(f"{scenario.name}, {TRIALS} trials a rater, seed {scenario.seed}")
 for rater in RATERS:
     run = robobt.run_trials(scenario.with_robot("blue 0", rater=rater), TRIALS)

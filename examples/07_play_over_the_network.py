@@ -35,7 +35,7 @@ def serve() -> tuple[subprocess.Popen[str], str]:
     for name, port in ports.items():
         option = name if name in ("vision", "tracker") else f"{name.replace('_', '-')}-port"
         options += [f"--{option}", str(port)]
-    program = [sys.executable, "-m", "robobt", "serve", "striker_vs_goalie", *options]
+    program = [sys.executable, "-m", "robobt", "serve", "striker_vs_goalkeeper", *options]
     server = subprocess.Popen(program, stdout=subprocess.PIPE, text=True)
     assert server.stdout is not None
     print(server.stdout.readline(), end="")  # says that it serves
@@ -50,7 +50,7 @@ def serve() -> tuple[subprocess.Popen[str], str]:
 # %%
 server, address = (None, "league://grsim") if GRSIM else serve()
 try:
-    run = robobt.run_trials(robobt.load_scenario("striker_vs_goalie"), TRIALS, world=address)
+    run = robobt.run_trials(robobt.load_scenario("striker_vs_goalkeeper"), TRIALS, world=address)
 finally:
     if server is not None:
         server.terminate()

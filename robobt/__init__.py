@@ -4,7 +4,7 @@ What a first session needs is found here::
 
     import robobt
 
-    scenario = robobt.load_scenario("striker_vs_goalie")
+    scenario = robobt.load_scenario("striker_vs_goalkeeper")
     run = robobt.run_trials(scenario.with_robot("blue 0", rater="open_angle"), trials=20)
     print(run.summary().goals["blue"].trials)
 

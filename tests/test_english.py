@@ -19,10 +19,10 @@ import pytest
 ROOT = Path(__file__).parent.parent
 CODE = ("robobt", "benchmarks", "paper")
 
-UNCHECKED = ("robobt/cli/",)
+UNCHECKED = ()
 """Beginnings of paths of code that is not checked; empty once all of it passes."""
 
-DOCUMENTS = ("README.md", "CONTRIBUTING.md")
+DOCUMENTS = ("README.md", "CONTRIBUTING.md", "docs/**/*.md")
 """Documents that are checked, as patterns; with "docs/**/*.md" once all of those pass."""
 
 REFUSED = {

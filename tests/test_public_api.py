@@ -125,7 +125,7 @@ def test_a_match_has_the_scenarios_seed_unless_another_is_given() -> None:
 
 
 def test_a_world_may_be_an_address() -> None:
-    scenario = robobt.load_scenario("striker_vs_goalie")
+    scenario = robobt.load_scenario("striker_vs_goalkeeper")
     with pytest.raises(ValueError, match="league://nobody"):
         robobt.run_trials(scenario, 1, world="league://nobody")
 
@@ -162,7 +162,7 @@ def test_variants_are_compared_with_the_first_trial_by_trial() -> None:
 
 def test_a_comparison_needs_two_variants() -> None:
     with pytest.raises(ValueError, match="needs two variants, not 1"):
-        robobt.compare({"alone": robobt.load_scenario("striker_vs_goalie")})
+        robobt.compare({"alone": robobt.load_scenario("striker_vs_goalkeeper")})
 
 
 def test_a_comparison_that_is_stopped_is_no_comparison(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -170,7 +170,7 @@ def test_a_comparison_that_is_stopped_is_no_comparison(monkeypatch: pytest.Monke
         raise KeyboardInterrupt
 
     monkeypatch.setattr("robobt.match.loop.MatchLoop.tick", stopped)
-    scenario = robobt.load_scenario("striker_vs_goalie")
+    scenario = robobt.load_scenario("striker_vs_goalkeeper")
     with pytest.raises(KeyboardInterrupt):
         robobt.compare({"a": scenario, "b": scenario}, 2)
 

@@ -82,10 +82,10 @@ def test_it_plays_and_loads_its_models_where_nothing_else_is_installed(
     clean.install("--no-deps", str(built[kind]))
 
     # Without PyTorch, which a match of hand-written skills does not import.
-    played = clean.run("robobt", "match", "striker_vs_goalie", "--trials", "2", "--json")
+    played = clean.run("robobt", "match", "striker_vs_goalkeeper", "--trials", "2", "--json")
     assert played.returncode == 0, played.stderr
     assert json.loads(played.stdout)["trials"] == 2
-    refused = clean.run("robobt", "match", "striker_vs_goalie", "--trials", "1", "--record", "x.html")
+    refused = clean.run("robobt", "match", "striker_vs_goalkeeper", "--trials", "1", "--record", "x.html")
     assert 'pip install "robobt[record]"' in refused.stderr
     assert clean.size() < 350e6
 
@@ -159,6 +159,6 @@ def test_it_finds_its_scenarios_and_models_outside_the_checkout(unpacked: Path, 
     found = run(unpacked, tmp_path, "import robobt; print(robobt.__file__)")
     assert found.startswith(str(unpacked))
     names = run(unpacked, tmp_path, "from robobt.cli import app; app(['scenarios', '--json'])")
-    assert "striker_vs_goalie" in names
+    assert "striker_vs_goalkeeper" in names
     told = run(unpacked, tmp_path, "from robobt.cli import app; app(['models', 'duel_ppo', '--json'])")
     assert json.loads(told)["models"][0]["file"].startswith(str(unpacked))

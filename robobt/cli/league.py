@@ -32,7 +32,7 @@ VISION, TRACKER, REFEREE = "224.5.23.2:10020", "224.5.23.2:10010", "224.5.23.1:1
 _port = partial(option, min=0, max=65535, show_default=True)
 
 
-class Referee(StrEnum):
+class FieldReferee(StrEnum):
     """Who referees a field that is served."""
 
     OWN = "own"
@@ -54,7 +54,9 @@ class LineUp:
     field: Annotated[str, option("--field", ", without a scenario")] = "division_b"
     simulator: Annotated[str | None, option("--simulator", "; by default the scenario's, or grsim")] = None
     realism: Annotated[str | None, option("--realism", "; by default the preset's")] = None
-    referee: Annotated[Referee, option("--referee", ", whose messages are published")] = Referee.NONE
+    referee: Annotated[FieldReferee, option("--referee", ", whose messages are published")] = (
+        FieldReferee.NONE
+    )
 
     def served(self, scenario: str | None, seed: int) -> tuple[ServedField, RefereeSettings | None]:
         """Return the field to serve, and a referee's settings where there is to be one."""
@@ -63,7 +65,7 @@ class LineUp:
         from robobt.match.referee.settings import RefereeSettings
         from robobt.world import FIELDS
 
-        rules = RefereeSettings() if self.referee is Referee.OWN else None
+        rules = RefereeSettings() if self.referee is FieldReferee.OWN else None
         if scenario is None:
             if self.field not in FIELDS:
                 there = f"there is no field {self.field!r}; {unknown_name(self.field, FIELDS)}"

@@ -12,7 +12,7 @@ from robobt.cli.common import Imports, Json, import_files
 from robobt.cli.options import option
 
 
-class Kind(StrEnum):
+class ListedKind(StrEnum):
     """What can be listed."""
 
     PLAYS = "plays"
@@ -25,7 +25,7 @@ class Kind(StrEnum):
 
 
 def list_(
-    kind: Annotated[Kind, typer.Argument(help="What to list.")],
+    kind: Annotated[ListedKind, typer.Argument(help="What to list.")],
     path: Annotated[list[Path] | None, option("--path", "; for models")] = None,
     imports: Imports = None,
     as_json: Json = False,
@@ -46,13 +46,13 @@ def list_(
     the own team's view, own goal at -x). problems: what is wrong with models or other packages' entries.
     """
     import_files(imports)
-    if path and kind is not Kind.MODELS:
+    if path and kind is not ListedKind.MODELS:
         raise typer.BadParameter("is for models", param_hint="--path")
-    if kind is Kind.MODELS:
+    if kind is ListedKind.MODELS:
         from robobt.cli.models import list_models
 
         list_models(path or (), as_json=as_json)
-    elif kind is Kind.SCENARIOS:
+    elif kind is ListedKind.SCENARIOS:
         from robobt.cli.scenarios import list_scenarios
 
         list_scenarios(as_json=as_json)

@@ -41,7 +41,7 @@ if TYPE_CHECKING:
     from robobt.match.refereeing import RefereeFactory
     from robobt.match.results.results import MatchResult
 
-SIM = "sim"
+BUILT_IN = "sim"
 """The built-in simulator, as a world's name; see :data:`robobt.worlds.SIM`."""
 
 
@@ -171,7 +171,7 @@ class MatchVenue:
     @property
     def alone(self) -> bool:
         """Whether one process plays, one trial after the other."""
-        return self.world != SIM or self.publish or self.live
+        return self.world != BUILT_IN or self.publish or self.live
 
 
 def match(

@@ -14,10 +14,10 @@ from robobt.cli.options import option
 if TYPE_CHECKING:
     from robobt.match import Scenario
 
-SETTINGS = ", as in 'ends.time_limit=10', 'simulator.preset=grsim' or 'blue 0.max_distance=2'"
+SCENARIO_CHANGES = ", as in 'ends.time_limit=10', 'simulator.preset=grsim' or 'blue 0.max_distance=2'"
 """What --set changes in a scenario."""
 
-Set = Annotated[list[str] | None, option("--set", SETTINGS)]
+Set = Annotated[list[str] | None, option("--set", SCENARIO_CHANGES)]
 Blue = Annotated[str, option("--blue")]
 Yellow = Annotated[str, option("--yellow")]
 

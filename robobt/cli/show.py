@@ -16,7 +16,7 @@ from robobt.cli.outputs import RECORDING, make_folders
 from robobt.cli.page import Page
 
 
-class Kind(StrEnum):
+class ThingKind(StrEnum):
     """What can be shown."""
 
     PLAY = "play"
@@ -29,12 +29,17 @@ class Kind(StrEnum):
     RECORDING = "recording"
 
 
-_PLURALS = {Kind.SKILL: "skills", Kind.RATER: "raters", Kind.POLICY: "policies", Kind.TASK: "tasks"}
+_PLURALS = {
+    ThingKind.SKILL: "skills",
+    ThingKind.RATER: "raters",
+    ThingKind.POLICY: "policies",
+    ThingKind.TASK: "tasks",
+}
 _FORMATS = {
-    Kind.PLAY: show_play.FORMATS,
-    Kind.SCENARIO: (".yaml",),
-    Kind.MODEL: (".md",),
-    Kind.RECORDING: show_recording.FORMATS,
+    ThingKind.PLAY: show_play.TREE_FORMATS,
+    ThingKind.SCENARIO: (".yaml",),
+    ThingKind.MODEL: (".md",),
+    ThingKind.RECORDING: show_recording.RECORDING_FORMATS,
 }
 
 
@@ -48,7 +53,7 @@ def show(
             autocompletion=complete_play,
         ),
     ],
-    kind: Annotated[Kind | None, option("--kind")] = None,
+    kind: Annotated[ThingKind | None, option("--kind")] = None,
     out: Annotated[
         Path | None,
         option(
@@ -82,15 +87,15 @@ def show(
     what = kind or _kind_of(name)
     _check(what, out, examined, shown, as_json=as_json)
     make_folders({"--out": out})
-    if what is Kind.RECORDING:
+    if what is ThingKind.RECORDING:
         show_recording.show_recording(Path(name), out, shown, page)
-    elif what is Kind.PLAY:
+    elif what is ThingKind.PLAY:
         show_play.show_play(name, out, examined, as_json=as_json)
-    elif what is Kind.SCENARIO:
+    elif what is ThingKind.SCENARIO:
         from robobt.cli.scenarios import show_scenario
 
         show_scenario(name, out, as_json=as_json)
-    elif what is Kind.MODEL:
+    elif what is ThingKind.MODEL:
         from robobt.cli.models import show_model
 
         show_model(name, out, as_json=as_json)
@@ -99,7 +104,7 @@ def show(
 
 
 def _check(
-    what: Kind,
+    what: ThingKind,
     out: Path | None,
     examined: show_play.Examined,
     shown: show_recording.Shown,
@@ -107,11 +112,11 @@ def _check(
     as_json: bool,
 ) -> None:
     """Refuse options that are for other kinds of things."""
-    if what is not Kind.PLAY and (given := examined.given()):
+    if what is not ThingKind.PLAY and (given := examined.given()):
         raise typer.BadParameter(f"is for a play, and this is a {what}", param_hint=given)
-    if what is not Kind.RECORDING and (given := shown.given()):
+    if what is not ThingKind.RECORDING and (given := shown.given()):
         raise typer.BadParameter(f"is for a recording, and this is a {what}", param_hint=given)
-    if what is Kind.RECORDING and as_json:
+    if what is ThingKind.RECORDING and as_json:
         raise typer.BadParameter("is not for recordings; see 'robobt record statistics'", param_hint="--json")
     formats = _FORMATS.get(what, ())
     if out is not None and out.suffix.lower() not in formats:
@@ -120,7 +125,7 @@ def _check(
         raise typer.BadParameter(there, param_hint="--out")
 
 
-def _kind_of(name: str) -> Kind:
+def _kind_of(name: str) -> ThingKind:
     """Return what has this name.
 
     Raises:
@@ -133,16 +138,18 @@ def _kind_of(name: str) -> Kind:
     from robobt.models.find import find_model
 
     play = name.partition(":")[0]
-    found = [Kind.PLAY] if registered("plays", play) else []
-    found += [Kind.SCENARIO] if name in bundled_scenarios() else []
-    found += [kind for kind, plural in _PLURALS.items() if kind is not Kind.TASK and registered(plural, name)]
+    found = [ThingKind.PLAY] if registered("plays", play) else []
+    found += [ThingKind.SCENARIO] if name in bundled_scenarios() else []
+    found += [
+        kind for kind, plural in _PLURALS.items() if kind is not ThingKind.TASK and registered(plural, name)
+    ]
     try:
         find_model(name)
-        found.append(Kind.MODEL)
+        found.append(ThingKind.MODEL)
     except ModelError:
         pass
     if not found and _is_task(name):
-        found.append(Kind.TASK)
+        found.append(ThingKind.TASK)
     if len(found) > 1:
         there = f"{name!r} is a {' and a '.join(found)}; choose with --kind"
         raise typer.BadParameter(there, param_hint="NAME")
@@ -151,19 +158,19 @@ def _kind_of(name: str) -> Kind:
     return found[0]
 
 
-def _kind_of_file(name: str) -> Kind | None:
+def _kind_of_file(name: str) -> ThingKind | None:
     """Return what a file holds, by the ending of its name; None for a name that is no file's."""
     lowered = name.lower()
     if lowered.endswith((RECORDING, *show_recording.LOGS)):
-        return Kind.RECORDING
+        return ThingKind.RECORDING
     if lowered.endswith((".pt", ".onnx")):
-        return Kind.MODEL
+        return ThingKind.MODEL
     if lowered.endswith((".xml", ".btproj", ".py")) or ".py:" in name:
-        return Kind.PLAY
+        return ThingKind.PLAY
     if lowered.endswith((".yaml", ".yml")):
         from robobt.config.yaml import read_yaml
 
-        return Kind.SCENARIO if "robots" in read_yaml(Path(name)) else Kind.PLAY
+        return ThingKind.SCENARIO if "robots" in read_yaml(Path(name)) else ThingKind.PLAY
     return None
 
 

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from robobt.tree import Behaviour
 
 
-FORMATS = (".svg", ".dot", ".yaml", ".xml")
+TREE_FORMATS = (".svg", ".dot", ".yaml", ".xml")
 """How the names of files end that a tree is written to."""
 
 

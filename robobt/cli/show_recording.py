@@ -19,7 +19,7 @@ from robobt.cli.page import Page
 LOGS = (".log", ".log.gz")
 """How the names of league logs end."""
 
-FORMATS = (PAGE, ".gif", ".png")
+RECORDING_FORMATS = (PAGE, ".gif", ".png")
 """How the names of files end that a recording is written to."""
 
 

@@ -18,15 +18,15 @@ from robobt.plays.baselines.team_2026_11 import defender as defender
 from robobt.plays.baselines.team_2026_11 import defender_2026_11 as defender_2026_11
 from robobt.plays.baselines.team_2026_11 import field_player as field_player
 from robobt.plays.baselines.team_2026_11 import field_player_2026_11 as field_player_2026_11
-from robobt.plays.baselines.team_2026_11 import keeper_2026_11 as keeper_2026_11
+from robobt.plays.baselines.team_2026_11 import goalkeeper_2026_11 as goalkeeper_2026_11
 from robobt.plays.go_to_ball_and_shoot import go_to_ball_and_shoot as go_to_ball_and_shoot
 from robobt.plays.goalkeeper import fitted_goalkeeper as fitted_goalkeeper
 from robobt.plays.goalkeeper import goalkeeper as goalkeeper
-from robobt.plays.keeper import keeper as keeper
 from robobt.plays.penalty_kick import penalty_kick as penalty_kick
+from robobt.plays.refereed_goalkeeper import refereed_goalkeeper as refereed_goalkeeper
 from robobt.plays.stand_still import stand_still as stand_still
 from robobt.plays.take_shot import take_shot as take_shot
-from robobt.plays.team_keeper import team_keeper as team_keeper
+from robobt.plays.team_goalkeeper import team_goalkeeper as team_goalkeeper
 from robobt.plays.team_player import team_player as team_player
 
 _HOMES = {

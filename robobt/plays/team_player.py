@@ -68,8 +68,8 @@ def team_player(
 ) -> Behaviour:
     """Follow the referee's commands, else do the task in the team's plan.
 
-    Any number of robots may play it, all with the same parameters; the goalkeeper plays ``team_keeper``. The
-    team assigns attacker, receivers, wall, markers and supporters in every frame
+    Any number of robots may play it, all with the same parameters; the goalkeeper plays ``team_goalkeeper``.
+    The team assigns attacker, receivers, wall, markers and supporters in every frame
     (:mod:`robobt.skills.tactics.agree`).
 
     Args:

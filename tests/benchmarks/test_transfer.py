@@ -28,8 +28,8 @@ def test_a_model_for_goalkeeper_keeps_goal_beside_the_play(tmp_path: Path) -> No
     model = str(write_model(tmp_path, network(23, 4), team_card("Goalkeeper", 0, 1)))
     for against in ("", "attack_main"):
         assert transfer.variants(model, against) == {
-            "team_keeper": (against, "team_keeper"),
-            "Goalkeeper": (against, f"team_keeper:policy={model}"),
+            "team_goalkeeper": (against, "team_goalkeeper"),
+            "Goalkeeper": (against, f"team_goalkeeper:policy={model}"),
         }
 
 

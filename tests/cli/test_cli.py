@@ -202,7 +202,16 @@ class TestMatch:
         assert figures["robots"]["blue 0"]["errors"] == 5
 
     def test_a_robot_that_fails_all_the_time_for_one_reason_is_told(self):
-        given = ("match", "striker_vs_goalie", "-n", "2", "--set", "ends.time_limit=0.1", "--workers", "1")
+        given = (
+            "match",
+            "striker_vs_goalkeeper",
+            "-n",
+            "2",
+            "--set",
+            "ends.time_limit=0.1",
+            "--workers",
+            "1",
+        )
         said = robobt(*given, "--blue", "attack_learned").stderr
         assert "blue 0 did nothing: its tree failed in every tick; Score: it has no model" in said
         assert "did nothing" not in robobt(*given).stderr

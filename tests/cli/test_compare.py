@@ -25,7 +25,7 @@ def test_every_combination_is_played_from_the_same_starts(tmp_path: Path) -> Non
     plays = ("--blue", "attack_main", "--blue", "attack_main:speed_factor=0.5, rater=open_angle")
     keepers = ("--yellow", ":speed_factor=1.0", "--yellow", ":speed_factor=0.5")
     out = tmp_path / "kept"
-    given = ("compare", "striker_vs_goalie", *plays, *keepers, *QUICK, "--out", out, "--json")
+    given = ("compare", "striker_vs_goalkeeper", *plays, *keepers, *QUICK, "--out", out, "--json")
     said = json.loads(run(*given))
     assert list(said["variants"]) == [
         "attack_main | :speed_factor=1.0",
@@ -48,9 +48,9 @@ def test_every_combination_is_played_from_the_same_starts(tmp_path: Path) -> Non
 
 def test_the_figures_are_printed_as_tables() -> None:
     shown = run(
-        "compare", "striker_vs_goalie", "--blue", "attack_main", "--blue", ":speed_factor=0.5", *QUICK
+        "compare", "striker_vs_goalkeeper", "--blue", "attack_main", "--blue", ":speed_factor=0.5", *QUICK
     )
-    assert "striker_vs_goalie: 2 trials a variant, seed 1" in shown
+    assert "striker_vs_goalkeeper: 2 trials a variant, seed 1" in shown
     assert ":speed_factor=0.5, compared with attack_main:" in shown
     assert (
         "scores with :speed_factor=0.5 but not with attack_main in 0 trials, the other way round in 0."
@@ -66,7 +66,7 @@ def test_long_variants_are_told_apart_on_a_narrow_screen(monkeypatch: pytest.Mon
         "--blue",
         "attack_main:dribble_speed=1.25,speed_factor=0.75",
     )
-    shown = run("compare", "striker_vs_goalie", "--blue", "", *speeds, *QUICK)
+    shown = run("compare", "striker_vs_goalkeeper", "--blue", "", *speeds, *QUICK)
     table, *rest = shown.split("compared with as it is:")
     assert len(rest) == 2
     assert "…" not in shown
@@ -83,7 +83,7 @@ def test_variants_with_names_alike_get_files_of_their_own(tmp_path: Path) -> Non
         path.write_text(tree)
     out = tmp_path / "kept"
     plays = [option for path in alike for option in ("--blue", str(path))]
-    run("compare", "striker_vs_goalie", *plays, *QUICK, "--out", out)
+    run("compare", "striker_vs_goalkeeper", *plays, *QUICK, "--out", out)
     assert len(list(out.iterdir())) == 3
 
 
@@ -91,7 +91,7 @@ def test_trials_that_are_the_same_match_are_told() -> None:
     fixed = ("--set", "blue 0.start.position=[-1, 0]", "--set", "ball.position=[0, 0]")
     shown = run(
         "compare",
-        "striker_vs_goalie",
+        "striker_vs_goalkeeper",
         "--blue",
         ":speed_factor=1",
         "--blue",
@@ -119,7 +119,7 @@ def test_trials_that_are_the_same_match_are_told() -> None:
     ],
 )
 def test_what_does_not_fit_is_one_plain_error(options: tuple[str, ...], problem: str) -> None:
-    shown = CliRunner().invoke(app, ["compare", "striker_vs_goalie", *options])
+    shown = CliRunner().invoke(app, ["compare", "striker_vs_goalkeeper", *options])
     assert shown.exit_code != 0
     assert problem in " ".join(shown.output.replace("│", " ").split())
     assert "Traceback" not in shown.output
@@ -134,7 +134,7 @@ def test_a_run_that_is_stopped_says_what_is_kept(
 
     monkeypatch.setattr("robobt.match.loop.MatchLoop.tick", stopped)
     out = ("--out", str(tmp_path)) if kept else ()
-    given = ["compare", "striker_vs_goalie", "--blue", "", "--blue", "attack_nn", *QUICK, *out]
+    given = ["compare", "striker_vs_goalkeeper", "--blue", "", "--blue", "attack_nn", *QUICK, *out]
     shown = CliRunner().invoke(app, given)
     assert shown.exit_code == 130
     assert told in " ".join(shown.stderr.split())
@@ -147,7 +147,7 @@ def test_a_tree_that_fails_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("robobt.skills.aim.select_shot.SelectShot.on_running", bursts)
     shown = " ".join(
         run(
-            "compare", "striker_vs_goalie", "--blue", ":speed_factor=0.5", "--blue", "take_shot", *QUICK
+            "compare", "striker_vs_goalkeeper", "--blue", ":speed_factor=0.5", "--blue", "take_shot", *QUICK
         ).split()
     )
     assert ":speed_factor=0.5: trees failed in" in shown
@@ -156,7 +156,7 @@ def test_a_tree_that_fails_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_match_takes_the_same_changes() -> None:
-    short = ("match", "striker_vs_goalie", "--trials", "1", "--set", "ends.time_limit=0.3", "--json")
+    short = ("match", "striker_vs_goalkeeper", "--trials", "1", "--set", "ends.time_limit=0.3", "--json")
     said = json.loads(run(*short, "--blue", "attack_nn", "--set", "simulator.preset=grsim"))
     assert said["time"]["mean"] == pytest.approx(0.3, abs=0.03)
     assert json.loads(run(*short))["trace"] != said["trace"]

@@ -16,7 +16,7 @@ from tests.match.recording.made_recording import record
 
 pytestmark = pytest.mark.integration
 
-MATCH = ["match", "striker_vs_goalie", "-n", "1", "--set", "ends.time_limit=2", "--record"]
+MATCH = ["match", "striker_vs_goalkeeper", "-n", "1", "--set", "ends.time_limit=2", "--record"]
 OUTPUTS = [
     ([*MATCH, "{}/a.html"], 50_000),
     ([*MATCH, "{}/a.robobt.arrows"], 5_000),

@@ -22,14 +22,16 @@ TRIALS = 4
 
 def play(out: Path, recording: Path) -> None:
     options = f"--trials {TRIALS} --workers 1 --record-trial 0 --json --record".split()
-    app(["match", "striker_vs_goalie", *options, str(recording), "--out", str(out)], standalone_mode=False)
+    app(
+        ["match", "striker_vs_goalkeeper", *options, str(recording), "--out", str(out)], standalone_mode=False
+    )
 
 
 @pytest.mark.slow
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="there is no fork here")
 def test_a_match_killed_at_random_moments_can_be_taken_up_again(tmp_path: Path) -> None:
     rng, recorded, taken_up = random.Random(23), 0, 0
-    scenario = load_scenario("striker_vs_goalie")
+    scenario = load_scenario("striker_vs_goalkeeper")
     begun = time.monotonic()
     wanted = run_trials_in(scenario, sim_world, TRIALS).summary().trace
     whole = time.monotonic() - begun

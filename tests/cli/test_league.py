@@ -85,7 +85,7 @@ def test_serve_stamps_its_vision_by_the_clock_that_is_asked_for(tmp_path: Path, 
 
 
 def test_serve_takes_a_scenario() -> None:
-    assert "Serving 2 robots" in robobt("serve", "striker_vs_goalie", *quiet(), "--seconds", 0.1)
+    assert "Serving 2 robots" in robobt("serve", "striker_vs_goalkeeper", *quiet(), "--seconds", 0.1)
 
 
 def test_serve_takes_a_field_and_shares_it_among_cameras(tmp_path: Path) -> None:
@@ -150,10 +150,13 @@ def test_a_port_that_is_taken_is_one_plain_line() -> None:
         (["serve", "--realism", "moon"], "no realism level is called 'moon'"),
         (["serve", "--interface", "203.0.113.7"], "203.0.113.7"),
         (
-            ["match", "striker_vs_goalie", "--world", "webots"],
+            ["match", "striker_vs_goalkeeper", "--world", "webots"],
             "webots: a world of the league is league://SIMULATOR",
         ),
-        (["match", "striker_vs_goalie", "--world", "nowhere.log"], "nowhere.log: No such file or directory"),
+        (
+            ["match", "striker_vs_goalkeeper", "--world", "nowhere.log"],
+            "nowhere.log: No such file or directory",
+        ),
         (["show", "nowhere.log"], "nowhere.log: No such file or directory"),
     ],
 )

@@ -45,9 +45,9 @@ def seen_by(monkeypatch: pytest.MonkeyPatch, look: Look, *command: str, end: boo
 
 def test_what_was_played_live_is_shown_again(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     path = str(tmp_path / "m.robobt.arrows")
-    played = ("match", "striker_vs_goalie", "--live", "--record", path, "--seed", "4")
+    played = ("match", "striker_vs_goalkeeper", "--live", "--record", path, "--seed", "4")
     live = seen_by(monkeypatch, lambda it: len(it.chunks) > 5 and it.state, *played)
-    assert live.hello["scenario"] == "striker_vs_goalie"
+    assert live.hello["scenario"] == "striker_vs_goalkeeper"
     assert live.state["movable"]
     recorded = load_recording(path)
     assert len(recorded) > 5
@@ -59,6 +59,6 @@ def test_what_was_played_live_is_shown_again(monkeypatch: pytest.MonkeyPatch, tm
 
 def test_the_trials_of_a_match_are_shown(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("robobt.live.session.LOOK", 0.1)
-    played = ("match", "striker_vs_goalie", "--set", "ends.time_limit=2.5", "--trials", "2", "--live")
+    played = ("match", "striker_vs_goalkeeper", "--set", "ends.time_limit=2.5", "--trials", "2", "--live")
     viewer = seen_by(monkeypatch, lambda it: it.chunks and it.state, *played, end=False)
     assert viewer.state["viewers"] == 1

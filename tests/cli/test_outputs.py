@@ -67,7 +67,16 @@ def test_every_command_with_an_output_keeps_this_rule(place: str) -> None:
 @pytest.mark.parametrize(
     "arguments",
     [
-        ["match", "striker_vs_goalie", "-n", "1", "--set", "ends.time_limit=0.1", "--record", "{}/x.html"],
+        [
+            "match",
+            "striker_vs_goalkeeper",
+            "-n",
+            "1",
+            "--set",
+            "ends.time_limit=0.1",
+            "--record",
+            "{}/x.html",
+        ],
         ["show", "attack_main", "--out", "{}/x.yaml"],
         ["show", "{recording}", "--out", "{}/x.html"],
         ["record", "case", "{recording}", "--tick", "3", "--robot", "blue 1", "--out", "{}/x.yaml"],

@@ -57,7 +57,7 @@ def test_a_case_of_a_play_from_a_python_file_is_saved_with_that_file(tmp_path: P
         "from robobt.plays import PLAYS\nfrom robobt.skills import Stop\n"
         "PLAYS.register('stands_still')(lambda: Stop())\n"
     )
-    scenario = parse_marked(bundled_scenarios()["striker_vs_goalie"].read_text(), "yaml").plain()
+    scenario = parse_marked(bundled_scenarios()["striker_vs_goalkeeper"].read_text(), "yaml").plain()
     scenario["robots"]["blue"][0] |= {"play": "stands_still", "params": {}}
     (tmp_path / "still.yaml").write_text(write_yaml(scenario))
     recorded, case = tmp_path / "still.robobt.arrows", tmp_path / "case.yaml"

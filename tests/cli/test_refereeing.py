@@ -14,7 +14,7 @@ from robobt.league.referee.process import VARIABLE
 from robobt.match import load_scenario
 from tests.league.referee.conftest import program as program
 
-WITH, WITHOUT = "six_v_six", "striker_vs_goalie"
+WITH, WITHOUT = "six_v_six", "striker_vs_goalkeeper"
 """Scenarios with a referee of their own and without."""
 
 

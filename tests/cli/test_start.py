@@ -63,7 +63,7 @@ def test_one_command_alone_is_the_same_as_among_all() -> None:
 
 
 @pytest.mark.parametrize(
-    ("typed", "offered"), [("match striker", "striker_vs_goalie"), ("show attack_m", "attack_main")]
+    ("typed", "offered"), [("match striker", "striker_vs_goalkeeper"), ("show attack_m", "attack_main")]
 )
 def test_a_shell_completes_names(typed: str, offered: str) -> None:
     environment = dict(

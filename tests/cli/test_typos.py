@@ -12,7 +12,7 @@ from robobt.config.errors import close_names, unknown_name
 from robobt.plays import PLAYS
 from tests.registries import temporarily
 
-MATCH = "match striker_vs_goalie "
+MATCH = "match striker_vs_goalkeeper "
 
 TYPOS = [
     ("train go_to_ball --set stpes=10", "--set: stpes: there is no such field; did you mean steps or"),
@@ -36,7 +36,7 @@ TYPOS = [
         "--blue: blue 0: sped: attack_main has no such",
     ),
     (MATCH + "--substitute bleu:*=SUCCESS", "--substitute: robots: there is no robot 'bleu'"),
-    ("match striker_vs_golie", "did you mean striker_vs_goalie?"),
+    ("match striker_vs_golie", "did you mean striker_vs_goalkeeper?"),
     ("show gotoball", "did you mean GoToBall"),
     ("show clearance --kind rater", "did you mean segment_clearance?"),
     ("show geometrical", "did you mean geometric?"),
@@ -83,6 +83,8 @@ def test_a_wrong_model_is_blamed_on_its_parameter_even_beside_needed_ones(value:
     play = f"learnt_{value.replace('.', '_')}:speed=1,model={value}"
     with temporarily(PLAYS):
         ended = CliRunner().invoke(
-            app, ["match", "striker_vs_goalie", "--import", str(path), "--blue", play], terminal_width=1000
+            app,
+            ["match", "striker_vs_goalkeeper", "--import", str(path), "--blue", play],
+            terminal_width=1000,
         )
     assert "--blue: blue 0: model: " in " ".join(ended.output.split())

@@ -51,16 +51,16 @@ def test_every_package_is_brought_by_the_extra_that_is_named() -> None:
 
 @pytest.mark.integration
 def test_a_light_installation_plays() -> None:
-    done = light("match", "striker_vs_goalie", "--trials", "1", "--json")
+    done = light("match", "striker_vs_goalkeeper", "--trials", "1", "--json")
     assert done.returncode == 0, done.stderr
 
 
 @pytest.mark.parametrize(
     ("command", "extra"),
     [
-        ("match striker_vs_goalie --trials 1 --record out/x.html", "record"),
+        ("match striker_vs_goalkeeper --trials 1 --record out/x.html", "record"),
         ("train go_to_ball", "learn"),
-        ("serve striker_vs_goalie --seconds 1", "league"),
+        ("serve striker_vs_goalkeeper --seconds 1", "league"),
         ("collect shots -n 1 --out x.parquet", "shots"),
         ("match six_v_six --live", "live"),
         ("tournament run team_player field_player", "tournament"),

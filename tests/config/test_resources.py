@@ -8,7 +8,7 @@ from robobt.config import resources
 def test_a_checkout_has_them_beside_the_package():
     assert resources.scenarios_folder().parts[-2:] == ("examples", "scenarios")
     assert resources.models_folder().name == "models"
-    assert "striker_vs_goalie" in resources.bundled_scenarios()
+    assert "striker_vs_goalkeeper" in resources.bundled_scenarios()
 
 
 def test_a_wheel_has_them_inside(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):

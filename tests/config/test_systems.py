@@ -21,7 +21,7 @@ def test_here_processes_can_be_stopped_by_signals() -> None:
 
 
 def test_what_starts_programs_says_what_it_needs(monkeypatch: pytest.MonkeyPatch) -> None:
-    scenario = load_scenario("striker_vs_goalie")
+    scenario = load_scenario("striker_vs_goalkeeper")
     world = PlainWorld(scenario)
     monkeypatch.setattr("robobt.config.systems.os", SimpleNamespace(name="nt"))
     with pytest.raises(SystemUnfitError, match="a team's own program needs Linux or macOS; on Windows"):

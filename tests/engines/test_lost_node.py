@@ -41,7 +41,7 @@ def figures(results: list[MatchResult]) -> list[dict[str, Any]]:
 
 
 def test_trials_are_the_same_on_one_machine_on_ray_and_with_a_lost_node(cluster: Any) -> None:
-    scenario, trials = load_scenario("striker_vs_goalie").lasting(10.0), count(200)
+    scenario, trials = load_scenario("striker_vs_goalkeeper").lasting(10.0), count(200)
     local = run_trials_in(scenario, sim_world, trials, 2)
     with RayEngine("ray") as engine, running_on(engine):
         assert engine.workers == 3

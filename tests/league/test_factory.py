@@ -75,7 +75,7 @@ def test_the_physics_to_expect_is_that_of_the_simulator_there(address: str, name
     def settings(scenario: Scenario, physics: str | None) -> SimSettings:
         raise AskedError(scenario_settings(scenario, physics))
 
-    scenario = load_scenario("striker_vs_goalie")
+    scenario = load_scenario("striker_vs_goalkeeper")
     with pytest.raises(AskedError) as asked:
         LeagueFactory(address, settings)(scenario)
     assert asked.value.args == (preset(name),)

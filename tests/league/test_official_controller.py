@@ -133,7 +133,7 @@ def nearest(frame: Frame, team: Team) -> float:
     )
 
 
-@pytest.mark.parametrize("name", ["striker_vs_goalie", "attack_vs_goalkeeper_motion_full", "six_v_six"])
+@pytest.mark.parametrize("name", ["striker_vs_goalkeeper", "attack_vs_goalkeeper_motion_full", "six_v_six"])
 def test_halt_and_timeouts_stop_everybody_within_half_a_second(
     name: str, refereed: Callable[..., Refereed]
 ) -> None:

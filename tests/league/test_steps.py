@@ -19,7 +19,7 @@ pytestmark = pytest.mark.integration
 
 
 def trace(period: float = 1 / 60) -> tuple[str, int]:
-    scenario = load_scenario("striker_vs_goalie").lasting(2.0).model_copy(update={"period": period})
+    scenario = load_scenario("striker_vs_goalkeeper").lasting(2.0).model_copy(update={"period": period})
     settings = settings_from(scenario.simulator)
     robots = {robot: setup.limits_over(settings.limits) for robot, setup in scenario.robots}
     endpoints, over = free_endpoints(), threading.Event()

@@ -189,7 +189,7 @@ def _address(endpoints: Endpoints, **more: str) -> str:
 
 
 def test_two_worlds_of_one_process_give_way_to_each_other(caplog: pytest.LogCaptureFixture) -> None:
-    scenario, address = load_scenario("striker_vs_goalie"), _address(free_endpoints())
+    scenario, address = load_scenario("striker_vs_goalkeeper"), _address(free_endpoints())
     first, second = world_from(address), world_from(address)
     with ExitStack() as ended:
         for factory in (first, second, first):
@@ -200,7 +200,7 @@ def test_two_worlds_of_one_process_give_way_to_each_other(caplog: pytest.LogCapt
 
 
 def test_two_teams_of_one_process_leave_each_other_alone() -> None:
-    scenario, endpoints = load_scenario("striker_vs_goalie"), free_endpoints()
+    scenario, endpoints = load_scenario("striker_vs_goalkeeper"), free_endpoints()
     blue = world_from(_address(endpoints, teams="blue"))(scenario)
     yellow = world_from(_address(endpoints, teams="yellow"))(scenario)
     assert not blue._closed  # type: ignore[attr-defined]
@@ -223,7 +223,7 @@ time.sleep(60)
 def test_two_players_of_one_robot_are_told(
     start_python: StartPython, caplog: pytest.LogCaptureFixture
 ) -> None:
-    scenario, endpoints = load_scenario("striker_vs_goalie"), free_endpoints()
+    scenario, endpoints = load_scenario("striker_vs_goalkeeper"), free_endpoints()
     other = start_python("-c", _OTHER, Connection(endpoints=endpoints).where)
     assert other.stdout is not None
     assert other.stdout.readline() == "[]\n"

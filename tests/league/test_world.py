@@ -218,7 +218,7 @@ def test_whoever_is_always_late_still_sees_what_comes() -> None:
 
 def test_a_scenario_is_played_over_the_network_as_in_the_process() -> None:
     endpoints = free_endpoints()
-    scenario = load_scenario("striker_vs_goalie").lasting(2.0)
+    scenario = load_scenario("striker_vs_goalkeeper").lasting(2.0)
     served_field = ServedField(scenario.field, Placement(), preset("default", realism=REALISM["none"]))
     # Nobody is on the field yet: the match puts its robots there.
     served_field.teleport(Teleport(RobotId(Team.BLUE, 11), 0.0, 2.0, 0.0))

@@ -24,7 +24,7 @@ def task(*plays: object, n: int = 1, **changes: object) -> SoccerTask:
     return SoccerTask(SoccerSettings.model_validate(settings), n, seed=4)
 
 
-@pytest.mark.parametrize("plays", [("attack_main",), ("team_keeper", "team_player", "team_player")])
+@pytest.mark.parametrize("plays", [("attack_main",), ("team_goalkeeper", "team_player", "team_player")])
 def test_a_play_does_in_an_arena_what_it_does_in_a_match(plays: tuple[str, ...]) -> None:
     made = task(*plays, starts={"yellow_x": (0.5, 1.5), "ball_x": (-0.5, 0.5), "y": (-1.0, 1.0)})
     made.reset()

@@ -43,7 +43,7 @@ class Session:
 
 
 @contextmanager
-def playing(scenario: str | Scenario = "striker_vs_goalie", **settings: Any) -> Iterator[Session]:
+def playing(scenario: str | Scenario = "striker_vs_goalkeeper", **settings: Any) -> Iterator[Session]:
     """Play a scenario live, for ever, until the end of the block."""
     loaded = load_scenario(scenario) if isinstance(scenario, str) else scenario
     matches: list[MatchLoop] = []

@@ -30,7 +30,7 @@ TIME = "return window.robobt.state.time"
 
 @pytest.fixture(scope="module")
 def session() -> Iterator[Session]:
-    with playing("striker_vs_goalie") as session:
+    with playing("striker_vs_goalkeeper") as session:
         yield session
 
 
@@ -58,7 +58,7 @@ def paused(page: Page, session: Session) -> int:
 def test_the_page_shows_the_match_as_it_goes_on(live: Page, session: Session) -> None:
     first = live.js(TIME)
     live.wait("return window.robobt.state.time > arguments[0] + .3", first)
-    assert live.find("h1").text == "striker_vs_goalie"
+    assert live.find("h1").text == "striker_vs_goalkeeper"
     assert len(live.driver.find_elements("css selector", "#picker .pick")) == 2
     live.wait("return document.querySelector('#tree .row[data-s=R]') !== null")
 
@@ -67,7 +67,7 @@ def test_a_page_says_that_nothing_is_played_yet(page: Page) -> None:
     with Server() as server:
         page.open(server.url)
         page.wait("return document.querySelector('.told').textContent.startsWith('Nothing is played yet')")
-        with MatchLoop(load_scenario("striker_vs_goalie"), 3, sim_world) as match:
+        with MatchLoop(load_scenario("striker_vs_goalkeeper"), 3, sim_world) as match:
             Live(server).begin(match)
             page.wait(
                 "return window.robobt.match.robots && document.querySelector('.told').textContent === ''"

@@ -23,7 +23,7 @@ pytestmark = pytest.mark.integration
 @pytest.fixture(scope="module")
 def recording(tmp_path_factory: pytest.TempPathFactory) -> Recording:
     path = tmp_path_factory.mktemp("chart") / "m.robobt.arrows"
-    scenario = load_scenario("striker_vs_goalie").lasting(6.0)
+    scenario = load_scenario("striker_vs_goalkeeper").lasting(6.0)
     with MatchLoop(scenario, 3, sim_world, path) as match:
         while match.tick():
             pass

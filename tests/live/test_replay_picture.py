@@ -17,7 +17,7 @@ BLUE, YELLOW, BALL, RUNNING = (47, 111, 237), (242, 194, 27), (255, 122, 26), (4
 @pytest.fixture(scope="module")
 def recording(tmp_path_factory: pytest.TempPathFactory) -> Recording:
     file = tmp_path_factory.mktemp("played") / "match.robobt.arrows"
-    robobt.play_match(robobt.load_scenario("striker_vs_goalie").lasting(1.0), seed=1, record=file)
+    robobt.play_match(robobt.load_scenario("striker_vs_goalkeeper").lasting(1.0), seed=1, record=file)
     return load_recording(file)
 
 

@@ -22,7 +22,7 @@ pytestmark = pytest.mark.integration
 
 @pytest.fixture(scope="module")
 def session() -> Iterator[Session]:
-    with playing("striker_vs_goalie", speed=1.0) as session:
+    with playing("striker_vs_goalkeeper", speed=1.0) as session:
         yield session
 
 
@@ -203,5 +203,5 @@ def test_what_was_seen_is_saved_as_a_recording(session: Session, tmp_path: Path)
     assert status == 200
     assert "attachment" in headers["Content-Disposition"]
     recording = parse_recording(body, tmp_path)
-    assert recording.header.scenario == "striker_vs_goalie"
+    assert recording.header.scenario == "striker_vs_goalkeeper"
     assert len(recording) > 3

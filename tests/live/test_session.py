@@ -44,7 +44,7 @@ class Clock:
 
 @pytest.fixture(scope="module")
 def scenario() -> Scenario:
-    return load_scenario("striker_vs_goalie").lasting(2.0)
+    return load_scenario("striker_vs_goalkeeper").lasting(2.0)
 
 
 @pytest.fixture
@@ -154,7 +154,7 @@ def test_a_recording_is_shown_as_it_was_played(server: Server, scenario: Scenari
     try:
         with Client(server.url) as client:
             client.read(lambda it: it.state.get("over"))
-            assert client.hello["scenario"] == "striker_vs_goalie"
+            assert client.hello["scenario"] == "striker_vs_goalkeeper"
             soon(lambda: server.audience.stream is not None and not server.audience.stream._encoded)
             saved = parse_recording(server.audience.stream.recording(), tmp_path)  # type: ignore[union-attr]
     finally:

@@ -139,7 +139,7 @@ def test_what_is_saved_is_what_was_recorded(played: tuple[Stream, Recording, lis
 def test_only_the_last_minutes_are_kept_and_can_still_be_saved(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(module, "KEPT_TIME", 2.0)
     monkeypatch.setattr(module, "_SEGMENT", 1.0)
-    with MatchLoop(load_scenario("striker_vs_goalie").lasting(7.0), 4, sim_world) as match:
+    with MatchLoop(load_scenario("striker_vs_goalkeeper").lasting(7.0), 4, sim_world) as match:
         stream = Stream(match.capture())
         while match.tick():
             stream.advance()

@@ -54,24 +54,24 @@ class Controlled:
 def test_the_goalkeeper_is_whom_the_controller_names() -> None:
     controlled = Controlled()
     controlled.play(0.1)
-    assert controlled.tree_of(RobotId(Team.BLUE, 0)) == "keeper"
+    assert controlled.tree_of(RobotId(Team.BLUE, 0)) == "goalkeeper"
     controlled.game = replace(controlled.game, blue=TeamStatus(keeper=4))
     frame = controlled.play(6.0)
-    assert controlled.tree_of(RobotId(Team.BLUE, 4)) == "keeper"
+    assert controlled.tree_of(RobotId(Team.BLUE, 4)) == "goalkeeper"
     assert controlled.tree_of(RobotId(Team.BLUE, 0)) == "team player"
-    assert controlled.tree_of(RobotId(Team.YELLOW, 0)) == "keeper"
+    assert controlled.tree_of(RobotId(Team.YELLOW, 0)) == "goalkeeper"
     # Its own wall may be in the way into the defence area.
     assert frame.robots()[RobotId(Team.BLUE, 4)].x < -3.0
     controlled.game = replace(controlled.game, blue=TeamStatus(keeper=0))
     controlled.play(0.1)
-    assert controlled.tree_of(RobotId(Team.BLUE, 0)) == "keeper"
+    assert controlled.tree_of(RobotId(Team.BLUE, 0)) == "goalkeeper"
 
 
 def test_a_goalkeeper_that_does_not_play_changes_nothing(caplog: pytest.LogCaptureFixture) -> None:
     controlled = Controlled()
     controlled.game = replace(controlled.game, yellow=TeamStatus(keeper=9))
     controlled.play(0.1)
-    assert controlled.tree_of(RobotId(Team.YELLOW, 0)) == "keeper"
+    assert controlled.tree_of(RobotId(Team.YELLOW, 0)) == "goalkeeper"
     assert len([record for record in caplog.records if "does not play here" in record.message]) == 1
 
 
@@ -113,7 +113,7 @@ def test_a_robot_that_has_left_is_not_there_for_the_trees() -> None:
 
 def test_everybody_stands_in_a_halt_whatever_the_plays_are() -> None:
     controlled = Controlled()
-    controlled.match = MatchLoop(load_scenario("striker_vs_goalie"), 1, controlled._world)
+    controlled.match = MatchLoop(load_scenario("striker_vs_goalkeeper"), 1, controlled._world)
     moving = controlled.play(0.7)
     assert max(robot.speed for robot in (*moving.own, *moving.opponents)) > 0.5
     controlled.game = GameState(RefereeCommand.HALT, may_touch=False)
@@ -123,7 +123,7 @@ def test_everybody_stands_in_a_halt_whatever_the_plays_are() -> None:
 
 def test_the_ends_of_the_scenario_do_not_end_a_match_that_a_controller_decides() -> None:
     controlled = Controlled()
-    controlled.match = MatchLoop(load_scenario("striker_vs_goalie").lasting(0.5), 1, controlled._world)
+    controlled.match = MatchLoop(load_scenario("striker_vs_goalkeeper").lasting(0.5), 1, controlled._world)
     controlled.game = GameState(RefereeCommand.FORCE_START, blue_score=2, yellow_score=1)
     controlled.play(2.0)
     result = controlled.match.result()

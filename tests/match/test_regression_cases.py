@@ -29,7 +29,7 @@ BLUE_0 = RobotId(Team.BLUE, 0)
 @pytest.fixture(scope="module")
 def recording(tmp_path_factory: pytest.TempPathFactory) -> Path:
     path = tmp_path_factory.mktemp("match") / "match.robobt.arrows"
-    scenario = load_scenario("striker_vs_goalie").with_robot("blue 0", max_distance=None)
+    scenario = load_scenario("striker_vs_goalkeeper").with_robot("blue 0", max_distance=None)
     MatchLoop(scenario.lasting(1.5), 3, sim_world, path).play()
     return path
 
@@ -55,7 +55,7 @@ def test_every_tick_of_a_match_can_be_a_case(recording: Path, tmp_path: Path) ->
 
 
 def test_noisy_late_cameras_are_played_again_as_the_trees_saw_them(tmp_path: Path) -> None:
-    scenario = load_scenario("striker_vs_goalie").lasting(1.0)
+    scenario = load_scenario("striker_vs_goalkeeper").lasting(1.0)
     noisy = scenario.model_copy(update={"simulator": {"preset": "default", "realism": "realistic"}})
     if sim_world(noisy).shows_truth:
         pytest.fail("this realism adds no noise")
@@ -74,7 +74,7 @@ def test_a_case_finds_its_files_from_anywhere(tmp_path: Path, monkeypatch: pytes
         folder.mkdir()
     (here / "mine.yaml").write_text(tree_yaml(PLAYS["attack_main"](), "mine"))
     (here / "rules.yaml").write_text('"*/KickToTarget": RUNNING\n')
-    scenario = parse_marked(bundled_scenarios()["striker_vs_goalie"].read_text(), "yaml").plain()
+    scenario = parse_marked(bundled_scenarios()["striker_vs_goalkeeper"].read_text(), "yaml").plain()
     scenario["robots"]["blue"][0] |= {"play": "mine.yaml", "params": {}, "substitute": "rules.yaml"}
     (here / "match.yaml").write_text(write_yaml(scenario))
     monkeypatch.chdir(here)

@@ -21,7 +21,7 @@ STRIKER, KEEPER = RobotId(Team.BLUE, 0), RobotId(Team.YELLOW, 0)
 
 @pytest.fixture(scope="module")
 def scenario() -> Scenario:
-    return load_scenario("striker_vs_goalie")
+    return load_scenario("striker_vs_goalkeeper")
 
 
 @pytest.fixture

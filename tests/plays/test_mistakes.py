@@ -84,7 +84,7 @@ def messages(body: str, number: int, path: Path) -> tuple[str, str]:
     with temporarily(PLAYS):
         shown = CliRunner().invoke(app, ["show", f"broken_{number}", "--import", str(path)])
         with pytest.raises(ScenarioError) as caught:
-            load_scenario("striker_vs_goalie").with_robot("blue 0", play=f"broken_{number}", params={})
+            load_scenario("striker_vs_goalkeeper").with_robot("blue 0", play=f"broken_{number}", params={})
     assert shown.exit_code == 1
     assert caught.value.field == "robots.blue.0.play"
     return " ".join(shown.output.split()), str(caught.value)
@@ -107,9 +107,9 @@ def test_a_play_that_returns_no_tree_is_named_with_its_line(line: str, said: str
 
 def test_a_misspelt_play_is_guessed_and_the_way_to_ones_own_files_named() -> None:
     with pytest.raises(ScenarioError, match=r"did you mean attack_main.*\n?.*come with --import"):
-        load_scenario("striker_vs_goalie").with_robot("blue 0", play="atack_main", params={})
+        load_scenario("striker_vs_goalkeeper").with_robot("blue 0", play="atack_main", params={})
 
 
 def test_a_misspelt_scenario_is_guessed() -> None:
-    with pytest.raises(ScenarioError, match="did you mean striker_vs_goalie"):
+    with pytest.raises(ScenarioError, match="did you mean striker_vs_goalkeeper"):
         load_scenario("striker_vs_golie")

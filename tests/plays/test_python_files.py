@@ -173,7 +173,9 @@ def test_two_states_of_a_team_are_told_with_the_command_in_which_they_meet(
     assert refused.exit_code == 1
     assert re.search(r"registered twice: mine\.py:\d+: \w+ and old/mine\.py:\d+: \w+; ", told)
     command = (
-        told.rpartition(": robobt ")[2].replace("SCENARIO", "striker_vs_goalie").replace("PLAY", "advance")
+        told.rpartition(": robobt ")[2]
+        .replace("SCENARIO", "striker_vs_goalkeeper")
+        .replace("PLAY", "advance")
     )
     played = CliRunner().invoke(app, [*command.split(), "-n", "1", "--set", "ends.time_limit=1"])
     assert played.exit_code == 0, played.output

@@ -11,7 +11,7 @@ import pytest
 from robobt.match import load_scenario
 from robobt.match.loop import MatchLoop
 from robobt.match.referee.settings import RefereeSettings
-from robobt.plays import defender, field_player, keeper
+from robobt.plays import defender, field_player, refereed_goalkeeper
 from robobt.skills.store import Store, TeamStore
 from robobt.tree import Behaviour, TreeRunner
 from robobt.world import (
@@ -42,7 +42,7 @@ Point = tuple[float, float]
 
 def six() -> dict[int, Behaviour]:
     return {
-        0: keeper(),
+        0: refereed_goalkeeper(),
         1: defender(place=0, size=2),
         2: defender(place=1, size=2),
         3: field_player(),

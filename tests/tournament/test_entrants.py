@@ -30,8 +30,8 @@ def plays(scenario: object, team: str) -> list[str]:
 def test_a_play_is_what_all_field_players_play() -> None:
     scenario = load_scenario("three_v_three")
     met = meeting(scenario, read_entrant("take_shot"), read_entrant("attack_main", {"speed_factor": 0.5}))
-    assert plays(met, "blue") == ["keeper", "take_shot", "take_shot"]
-    assert plays(met, "yellow") == ["keeper", "attack_main", "attack_main"]
+    assert plays(met, "blue") == ["refereed_goalkeeper", "take_shot", "take_shot"]
+    assert plays(met, "yellow") == ["refereed_goalkeeper", "attack_main", "attack_main"]
     assert dict(met.robots)[
         met.robots.of("yellow")[1] and next(r for r, _ in met.robots if str(r) == "yellow 1")
     ].params == {"speed_factor": 0.5}
@@ -52,19 +52,21 @@ def test_both_sides_have_the_same_goalkeeper_unless_an_entrant_brings_its_own() 
     scenario = load_scenario("team_v_baseline")
     new, old = read_entrant("team_player"), read_entrant("team_v_baseline:yellow")
     met = meeting(scenario, old, new)
-    assert plays(met, "blue")[0] == "keeper_2026_11"
-    assert plays(met, "yellow")[0] == "team_keeper"
+    assert plays(met, "blue")[0] == "goalkeeper_2026_11"
+    assert plays(met, "yellow")[0] == "team_goalkeeper"
 
 
 def test_a_side_alone_with_its_goalkeeper_plays_what_the_entrant_plays() -> None:
-    met = meeting(load_scenario("striker_vs_goalie"), read_entrant("take_shot"), read_entrant("take_shot"))
+    met = meeting(
+        load_scenario("striker_vs_goalkeeper"), read_entrant("take_shot"), read_entrant("take_shot")
+    )
     assert plays(met, "yellow") == ["take_shot"]
 
 
 def test_a_scenarios_side_is_an_entrant_in_any_scenario() -> None:
     old = read_entrant("team_v_baseline:yellow")
     met = meeting(load_scenario("three_v_three"), old, old)
-    assert plays(met, "yellow") == ["keeper_2026_11", "defender_2026_11", "defender_2026_11"]
+    assert plays(met, "yellow") == ["goalkeeper_2026_11", "defender_2026_11", "defender_2026_11"]
 
 
 def test_an_edited_tree_is_another_team(tmp_path: Path) -> None:

@@ -17,7 +17,7 @@ from robobt.tournament.store import MatchStore, StoreError
 
 KILLS = 10
 COMMAND = [
-    *("tournament", "take_shot", "attack_main", "attack_nn", "--scenario", "striker_vs_goalie"),
+    *("tournament", "take_shot", "attack_main", "attack_nn", "--scenario", "striker_vs_goalkeeper"),
     *("--set", "ends.time_limit=6", "--rounds", "8", "--json", "--record", "worst"),
 ]
 

@@ -152,8 +152,8 @@ def test_matches_of_programs_in_lock_step_are_the_same_bit_for_bit(tmp_path: Pat
 @pytest.mark.slow
 @pytest.mark.parametrize("sides", [1, 2])
 def test_robobts_own_matches_in_lock_step_are_the_same_bit_for_bit(sides: int, tmp_path: Path) -> None:
-    scenario = load_scenario("striker_vs_goalie").lasting(3.0)
-    teams = [stepped(tmp_path, name, "striker_vs_goalie") for name in ("first", "second")]
+    scenario = load_scenario("striker_vs_goalkeeper").lasting(3.0)
+    teams = [stepped(tmp_path, name, "striker_vs_goalkeeper") for name in ("first", "second")]
     if sides == 1:
         teams[1] = read_entrant("attack_main")
     found = twice(tmp_path, plan(1, scenario=scenario, entrants=tuple(teams), world=sim_world))

@@ -137,7 +137,7 @@ def test_a_play_that_a_python_file_does_not_register_is_told() -> None:
         read_entrant("old/my_team.py:strikr")
 
 
-QUICK = ("--scenario", "striker_vs_goalie", "--set", "ends.time_limit=0.3", "--workers", "2")
+QUICK = ("--scenario", "striker_vs_goalkeeper", "--set", "ends.time_limit=0.3", "--workers", "2")
 
 
 def test_a_sequential_test_compares_two_states(teams: tuple[str, str]) -> None:

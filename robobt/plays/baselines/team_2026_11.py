@@ -22,8 +22,8 @@ from robobt.plays.baselines.go_round import GoRound
 from robobt.plays.baselines.is_attacker import IsAttacker
 from robobt.plays.baselines.mark_opponent import MarkOpponent
 from robobt.plays.goalkeeper import goalkeeper
-from robobt.plays.keeper import ball_dead
 from robobt.plays.penalty_kick import penalty_kick
+from robobt.plays.refereed_goalkeeper import ball_dead
 from robobt.skills.aim.aim_upfield import AimUpfield
 from robobt.skills.aim.raters import Rater
 from robobt.skills.aim.select_pass import SelectPass
@@ -256,15 +256,15 @@ def defender_2026_11(
 
 
 @formerly(speed="speed_factor")
-@PLAYS.register("keeper_2026_11")
-def keeper_2026_11(*, speed_factor: float = 1.0) -> Behaviour:
+@PLAYS.register("goalkeeper_2026_11")
+def goalkeeper_2026_11(*, speed_factor: float = 1.0) -> Behaviour:
     """Keep goal as ``goalkeeper`` does, within the referee's commands.
 
     Args:
         speed_factor: factor on its top speed.
     """
     tree = first_of(
-        "keeper",
+        "goalkeeper",
         when("halted", IsHalted(), Stop()),
         when("penalty", ball_dead(), IsRestart(kind=Restart.PENALTY), GoToPenaltyPosition(goalkeeper=True)),
         when(

@@ -16,7 +16,7 @@ from robobt.tournament.played import PlayedMatch, SideResult
 from robobt.world.game import Team
 from tests.tournament.made_up import played
 
-QUICK = ("--scenario", "striker_vs_goalie", "--candidates", "6", "--at-once", "2", "--rounds", "3")
+QUICK = ("--scenario", "striker_vs_goalkeeper", "--candidates", "6", "--at-once", "2", "--rounds", "3")
 
 
 def invoke(*options: object) -> Result:
@@ -109,7 +109,7 @@ def test_a_sweep_is_played() -> None:
     ],
 )
 def test_what_cannot_be_swept_is_told_in_one_line(options: tuple[str, ...], problem: str) -> None:
-    shown = invoke(*options, "--scenario", "striker_vs_goalie")
+    shown = invoke(*options, "--scenario", "striker_vs_goalkeeper")
     assert shown.exit_code in (1, 2)
     assert problem in " ".join(shown.output.replace("│", " ").split())
 

@@ -10,7 +10,16 @@ from typer.testing import CliRunner, Result
 
 from robobt.cli import app
 
-QUICK = ("--scenario", "striker_vs_goalie", "--set", "ends.time_limit=0.3", "--rounds", "1", "--workers", "0")
+QUICK = (
+    "--scenario",
+    "striker_vs_goalkeeper",
+    "--set",
+    "ends.time_limit=0.3",
+    "--rounds",
+    "1",
+    "--workers",
+    "0",
+)
 
 
 def invoke(*options: object) -> Result:
@@ -49,7 +58,7 @@ def test_a_tournament_is_played_kept_told_and_reported(tmp_path: Path) -> None:
     assert page.read_text().count(".recordings/") == 2
     again = invoke(*given)
     assert again.exit_code == 0
-    assert "striker_vs_goalie: 6 matches, seed 1, own referee" in again.output
+    assert "striker_vs_goalkeeper: 6 matches, seed 1, own referee" in again.output
     assert "won-drawn-lost of the row against the column" in again.output
 
 
@@ -161,7 +170,7 @@ def test_a_folder_in_the_place_of_a_report_is_refused_before_the_first_match(tmp
     ],
 )
 def test_what_does_not_fit_is_one_plain_error(options: tuple[str, ...], problem: str) -> None:
-    shown = invoke("--scenario", "striker_vs_goalie", *options)
+    shown = invoke("--scenario", "striker_vs_goalkeeper", *options)
     assert shown.exit_code in (1, 2)
     assert problem in plain(shown)
     assert "Traceback" not in shown.output

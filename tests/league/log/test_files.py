@@ -274,7 +274,7 @@ def test_a_logs_game_events_are_recorded_once_and_counted(tmp_path: Path, played
 
 def test_a_scenarios_robots_watch_a_log(played: Path) -> None:
     factory = world_from(str(played))
-    match = MatchLoop(load_scenario("striker_vs_goalie").lasting(1.0), 0, factory)
+    match = MatchLoop(load_scenario("striker_vs_goalkeeper").lasting(1.0), 0, factory)
     assert isinstance(match.world, LogWorld)
     result = match.play()
     assert result.ticks == 41

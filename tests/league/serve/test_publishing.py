@@ -48,7 +48,7 @@ def test_a_published_match_is_heard_and_plays_as_if_it_were_not() -> None:
 
 
 def test_kicks_that_a_world_saw_are_counted_in_a_published_match_too() -> None:
-    scenario = load_scenario("striker_vs_goalie").lasting(0.1)
+    scenario = load_scenario("striker_vs_goalkeeper").lasting(0.1)
     striker = RobotId(Team.BLUE, 0)
 
     class Seeing(SimWorld):
@@ -67,7 +67,7 @@ def test_kicks_that_a_world_saw_are_counted_in_a_published_match_too() -> None:
 
 
 def test_it_waits_for_the_clock_and_no_longer(monkeypatch: pytest.MonkeyPatch) -> None:
-    scenario = load_scenario("striker_vs_goalie").lasting(0.5)
+    scenario = load_scenario("striker_vs_goalkeeper").lasting(0.5)
     now = [0.0]
     naps: list[float] = []
 

@@ -170,14 +170,14 @@ def test_a_play_in_the_learners_places_starts_where_they_do_and_meets_who_they_m
     mine = instead(settings, PlaySettings(play="attack_expected"))
     assert (mine.blue, mine.yellow) == (("play", "play"), ("play", "goalkeeper"))
     assert [one.play for one in mine.plays] == ["attack_expected", "stand_still", "attack_main"]
-    task, theirs = SUITE["Save"](), instead(SUITE["Save"](), PlaySettings(play="team_keeper"))
+    task, theirs = SUITE["Save"](), instead(SUITE["Save"](), PlaySettings(play="team_goalkeeper"))
     starts = [SoccerTask(each).sample_starts(5, 10) for each in (task, theirs)]
     np.testing.assert_array_equal(*starts)
 
 
 def test_a_goalkeeper_starts_in_its_goal_by_its_role_and_by_its_play() -> None:
     by_role = SoccerSettings(yellow=("goalkeeper", "wall"))
-    by_play = SoccerSettings(yellow=("play", "wall"), plays=("team_keeper",))
+    by_play = SoccerSettings(yellow=("play", "wall"), plays=("team_goalkeeper",))
     for settings in (by_role, by_play):
         made = SoccerTask(settings)
         keeper, other = made.sample_starts(3, 50)[:, 6:18].reshape(50, 2, 6).transpose(1, 0, 2)

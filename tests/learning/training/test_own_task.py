@@ -72,7 +72,7 @@ def test_a_task_in_ones_own_folder_goes_all_the_way(
         "-m",
         "robobt",
         "match",
-        "striker_vs_goalie",
+        "striker_vs_goalkeeper",
         "--blue",
         "my_play.yaml",
         "--trials",

@@ -97,7 +97,7 @@ def test_siblings_of_one_name_and_names_xml_cannot_hold_are_told_apart(tmp_path:
 
 def test_a_whole_matchs_tree_is_written_from_the_file_alone(tmp_path: Path) -> None:
     path = tmp_path / "match.robobt.arrows"
-    MatchLoop(load_scenario("striker_vs_goalie").lasting(1.0), 1, sim_world, path).play()
+    MatchLoop(load_scenario("striker_vs_goalkeeper").lasting(1.0), 1, sim_world, path).play()
     loaded = load_recording(path)
     written = write_btlog(loaded, RobotId(Team.BLUE, 0), tmp_path / "x.btlog")
     root, _, changes = decode(written.read_bytes())

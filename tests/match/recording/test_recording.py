@@ -619,7 +619,7 @@ def test_more_text_than_a_match_has_is_refused(path: Path, monkeypatch: pytest.M
 
 
 def test_what_skills_write_is_recorded_whenever_it_changes(path: Path) -> None:
-    scenario = load_scenario("striker_vs_goalie").with_robot("blue 0", max_distance=None).lasting(1.5)
+    scenario = load_scenario("striker_vs_goalkeeper").with_robot("blue 0", max_distance=None).lasting(1.5)
     match = MatchLoop(scenario, 3, sim_world, path)
     striker = match.players[0]
     seen = []

@@ -27,7 +27,7 @@ def test_the_baseline_row_of_table_4(trial: int, printed: float):
 
 
 def test_the_striker_scores_against_the_goalkeeper():
-    summary = summarise(run_trials_in(load_scenario("striker_vs_goalie"), sim_world, 20).results)
+    summary = summarise(run_trials_in(load_scenario("striker_vs_goalkeeper"), sim_world, 20).results)
     assert summary.goals["blue"].trials.count >= 10
 
 

@@ -33,7 +33,7 @@ def test_a_team_plays_something_else_but_for_its_goalkeeper() -> None:
     scenario = load_scenario("six_v_six")
     other = with_team(scenario, Team.YELLOW, "field_player", {})
     plays = [robot.play for robot in other.robots.yellow]
-    assert plays == ["team_keeper", *["field_player"] * 5]
+    assert plays == ["team_goalkeeper", *["field_player"] * 5]
     assert other.robots.blue == scenario.robots.blue
-    alone = with_team(load_scenario("striker_vs_goalie"), Team.YELLOW, None, {"speed_factor": 0.5})
+    alone = with_team(load_scenario("striker_vs_goalkeeper"), Team.YELLOW, None, {"speed_factor": 0.5})
     assert alone.robots.yellow[0].params["speed_factor"] == 0.5

@@ -189,7 +189,7 @@ def test_models_lie_beside_the_file_that_names_them(tmp_path: Path, monkeypatch)
 
 def test_a_model_given_on_the_command_line_is_refused_too():
     settings = ["--set", "blue 0.play=attack_nn", "--set", "blue 0.rater.model=/nowhere.pt"]
-    result = CliRunner().invoke(app, ["match", "striker_vs_goalie", *settings])
+    result = CliRunner().invoke(app, ["match", "striker_vs_goalkeeper", *settings])
     assert result.exit_code == 1
     assert "blue 0: rater.model: /nowhere.pt: there is no such file" in result.output
     assert result.output.count("\n") == 1

@@ -63,7 +63,7 @@ class TestFiles:
         assert load_scenario(str(path)).robots.blue[0].play == "scripted"
 
     def test_a_name_is_looked_up_among_the_bundled_ones(self):
-        assert load_scenario("striker_vs_goalie").name == "striker_vs_goalie"
+        assert load_scenario("striker_vs_goalkeeper").name == "striker_vs_goalkeeper"
 
     @pytest.mark.parametrize("name", bundled_scenarios())
     def test_every_bundled_scenario_loads_and_can_be_placed(self, name: str):
@@ -74,7 +74,7 @@ class TestFiles:
             loaded.place(rng(seed))
 
     def test_no_such_file_lists_the_bundled_scenarios(self):
-        with pytest.raises(ScenarioError, match=r"nowhere: no such file or bundled .*striker_vs_goalie"):
+        with pytest.raises(ScenarioError, match=r"nowhere: no such file or bundled .*striker_vs_goalkeeper"):
             load_scenario("nowhere")
 
     def test_a_folder_is_no_scenario(self, tmp_path: Path):

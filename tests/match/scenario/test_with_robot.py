@@ -29,7 +29,7 @@ def test_another_play_keeps_only_the_parameters_that_it_has() -> None:
 
 
 def test_a_field_of_the_setup_is_set() -> None:
-    scenario = load_scenario("striker_vs_goalie")
+    scenario = load_scenario("striker_vs_goalkeeper")
     changed = scenario.with_robot(
         RobotId(Team.YELLOW, 0), limits={"max_speed": 1.0}, start={"position": (-4.0, 0.2)}
     )
@@ -70,7 +70,7 @@ def test_robots_keep_their_order() -> None:
 )
 def test_what_does_not_fit_is_named(robot: str, changes: dict[str, object], problem: str) -> None:
     with pytest.raises(ScenarioError, match=problem):
-        load_scenario("striker_vs_goalie").with_robot(robot, **changes)
+        load_scenario("striker_vs_goalkeeper").with_robot(robot, **changes)
 
 
 def test_two_robots_cannot_have_one_number() -> None:

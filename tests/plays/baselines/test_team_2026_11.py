@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from robobt.plays import PLAYS, defender_2026_11, field_player_2026_11, keeper_2026_11
+from robobt.plays import PLAYS, defender_2026_11, field_player_2026_11, goalkeeper_2026_11
 from robobt.skills.store import Store, TeamStore
 from robobt.tree import Behaviour, TreeRunner
 from robobt.world import DIVISION_B, BallState, Frame, RobotCommand, RobotState, Team
@@ -21,7 +21,7 @@ EVERY = 6
 
 def six() -> dict[int, Behaviour]:
     return {
-        0: keeper_2026_11(),
+        0: goalkeeper_2026_11(),
         1: defender_2026_11(place=0, size=2),
         2: defender_2026_11(place=1, size=2),
         3: field_player_2026_11(),
@@ -78,4 +78,4 @@ def test_it_decides_as_in_november_2026() -> None:
 
 
 def test_it_is_played_by_name() -> None:
-    assert {"keeper_2026_11", "defender_2026_11", "field_player_2026_11"} <= set(PLAYS)
+    assert {"goalkeeper_2026_11", "defender_2026_11", "field_player_2026_11"} <= set(PLAYS)

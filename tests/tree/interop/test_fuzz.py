@@ -55,11 +55,14 @@ tree:
       - Timeout: {name: in time, seconds: 2, child: {Repeat: {name: twice, num_success: 2, child: Stop}}}
       - ParallelCount: {name: both, success_count: 1, children: [Stop, {IsRestart: {kind: penalty}}]}
       - RefereeSwitch: {name: phases, cases: {halt | stop: Stop, play: Wall}, otherwise: Stop}
-      - SubTree: {tree: keeper}
+      - SubTree: {tree: refereed_goalkeeper}
       - {SelectShot: {rater: {name: gaussian, spacing: 0.03}, name: "a \\"name\\""}}
 """
 
-YAML_SEEDS = [EVERYTHING, *[tree_yaml(PLAYS[name](), name) for name in ("attack_support", "keeper")]]
+YAML_SEEDS = [
+    EVERYTHING,
+    *[tree_yaml(PLAYS[name](), name) for name in ("attack_support", "refereed_goalkeeper")],
+]
 YAML_DATA = {text: parse_marked(text, "seed").plain() for text in YAML_SEEDS}
 XML_SEEDS = [path.read_text() for path in sorted((Path(__file__).parent / "data").glob("*.xml"))]
 

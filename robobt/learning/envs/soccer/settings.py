@@ -31,7 +31,7 @@ AIMS = ("score", "save", "keep", "pass", "hold")
 LEARNER: Role = "learner"
 GOALKEEPER: Role = "goalkeeper"
 PLAY_ROLE: Role = "play"
-KEEPING = ("goalkeeper", "fitted_goalkeeper", "keeper", "team_keeper", "keeper_2026_11")
+KEEPING = ("goalkeeper", "fitted_goalkeeper", "refereed_goalkeeper", "team_goalkeeper", "goalkeeper_2026_11")
 """Plays of goalkeepers."""
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from robobt.plays.base import PLAYS, first_of, when
 from robobt.plays.goalkeeper import keep_goal
-from robobt.plays.keeper import keep_by_the_rules
+from robobt.plays.refereed_goalkeeper import keep_by_the_rules
 from robobt.skills.aim.aim_upfield import AimUpfield
 from robobt.skills.aim.select_clearance import SelectClearance
 from robobt.skills.ball.kick_to_target import KickToTarget
@@ -16,9 +16,9 @@ from robobt.tree.parameters import formerly
 
 
 @formerly(speed="speed_factor")
-@PLAYS.register("team_keeper")
-def team_keeper(*, speed_factor: float = 1.0, chips: bool = True, policy: str = "") -> Behaviour:
-    """Keep goal as ``keeper`` does, and chip the ball out of the area if no way along the ground is free.
+@PLAYS.register("team_goalkeeper")
+def team_goalkeeper(*, speed_factor: float = 1.0, chips: bool = True, policy: str = "") -> Behaviour:
+    """Keep goal as ``refereed_goalkeeper`` does, and chip the ball out where no way along the ground is free.
 
     A ball that rests in the area is kicked to the foremost team-mate that can be reached, else upfield, over
     robots in front of the area.

@@ -23,8 +23,8 @@ _PENALTY_SHOT_SPEED = 2.5
 
 
 @formerly(speed="speed_factor")
-@PLAYS.register("keeper")
-def keeper(*, speed_factor: float = 1.0) -> Behaviour:
+@PLAYS.register("refereed_goalkeeper")
+def refereed_goalkeeper(*, speed_factor: float = 1.0) -> Behaviour:
     """Keep goal as ``goalkeeper`` does, within the referee's commands.
 
     Args:
@@ -36,7 +36,7 @@ def keeper(*, speed_factor: float = 1.0) -> Behaviour:
 def keep_by_the_rules(speed_factor: float, in_play: Behaviour) -> Behaviour:
     """Follow the referee's commands for a goalkeeper, and tick ``in_play`` while the ball is in play."""
     return first_of(
-        "keeper",
+        "goalkeeper",
         when("halted", IsHalted(), Stop()),
         when("penalty", ball_dead(), IsRestart(kind=Restart.PENALTY), GoToPenaltyPosition(goalkeeper=True)),
         when(
