@@ -67,7 +67,7 @@ class Trials:
         return scenario.trials if self.trials is None else self.trials
 
     def processes(self, count: int, alone: bool) -> int:
-        """Return how many processes play so many trials; ``alone`` where one has to.
+        """Return how many processes play that many trials; ``alone`` where one has to.
 
         Raises:
             typer.BadParameter: more are asked for than can play there.
@@ -110,7 +110,7 @@ class KeptTrials:
         return self.record_trial or 0
 
     def recording(self, name: str, count: int) -> Path | None:
-        """Return the file to write, of a scenario of that name with so many trials; None to record nothing.
+        """Return the file to write, for a scenario of that name with ``count`` trials; None to record nothing.
 
         Raises:
             typer.BadParameter: there is no such trial, or the file is more likely another's.

@@ -18,7 +18,7 @@ TREES_FAILED = 3
 """The exit status of a run that was played to its end although a robot's tree failed."""
 
 _FEW = 10
-"""Fewer different trials than this say so little that it is told."""
+"""With fewer different trials than this, a warning says how little they show."""
 
 
 def print_summary(summary: Summary, run: Run, requested: int) -> None:

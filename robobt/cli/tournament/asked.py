@@ -23,7 +23,7 @@ EXITS = ("better", "not better", "undecided")
 """What a sequential test says, by the exit code."""
 
 ALPHA = BETA = 0.05
-"""How often a sequential test may err unless it is told otherwise."""
+"""How often a sequential test may err by default."""
 
 Alpha = Annotated[float, option("--alpha", min=1e-6, max=0.49)]
 
@@ -97,5 +97,5 @@ def tell_code(matches: Iterable[PlayedMatch]) -> None:
     if len(versions) > 1:
         warn(
             f"the matches were played by {len(versions)} states of the code; for a fair comparison play "
-            "them all anew, with another --out"
+            "them all again, with another --out"
         )
