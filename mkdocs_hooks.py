@@ -79,12 +79,24 @@ def commands() -> str:
     from paper.__main__ import application
     from robobt.cli import app
 
-    parts = ["# Commands\n", *_command(typer.main.get_command(app), "robobt", 2)]
+    parts = ["# Commands\n", *_command(typer.main.get_command(app), "robobt", 2), options_table()]
     paper = typer.main.get_command(application())
     parts += [f"## {PAPER}\n\n{paper.help} It runs in a clone of the repository.\n"]
     for name, command in paper.commands.items():
         parts += _command(command, f"{PAPER} {name}", 3)
     return "\n".join(parts)
+
+
+def options_table() -> str:
+    """Write what each option means, which is the same in every command that has it."""
+    from robobt.cli.options import LETTERS, MEANINGS
+
+    rows = [
+        f"| `{name}`{f', `{LETTERS[name]}`' if name in LETTERS else ''} | {_cell(meaning)} |"
+        for name, meaning in sorted(MEANINGS.items())
+    ]
+    head = "An option means one thing in all commands of robobt; a command may add what is its own."
+    return "\n".join(["## All options\n", f"{head}\n", "| option | meaning |", "| --- | --- |", *rows, ""])
 
 
 def _command(command: Any, path: str, level: int) -> Iterable[str]:

@@ -110,7 +110,7 @@ class KeptTrials:
         return self.record_trial or 0
 
     def recording(self, name: str, count: int) -> Path | None:
-        """Return the file to write, for a scenario of that name with ``count`` trials; None to record nothing.
+        """Return the file to write for ``count`` trials of a scenario of that name; None to record nothing.
 
         Raises:
             typer.BadParameter: there is no such trial, or the file is more likely another's.

@@ -8,6 +8,7 @@ import click
 import pytest
 import typer
 
+from mkdocs_hooks import commands, options_table
 from robobt.cli import _COMMAND_GROUPS, _COMMANDS, application
 from robobt.cli.moved import COMMANDS, OPTIONS, what_became
 from robobt.cli.options import LETTERS, MEANINGS
@@ -44,6 +45,12 @@ def test_every_option_is_in_the_table_and_its_help_begins_with_its_meaning() -> 
 
 def test_every_entry_of_the_table_is_an_option() -> None:
     assert {name for _, option in ALL for name in option.opts if name.startswith("--")} == set(MEANINGS)
+
+
+def test_the_reference_has_the_table() -> None:
+    table = options_table()
+    assert all(f"| `{name}`" in table and meaning in table for name, meaning in MEANINGS.items())
+    assert commands().count(table) == 1
 
 
 def test_a_letter_is_one_option() -> None:
