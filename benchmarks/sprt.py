@@ -7,10 +7,10 @@ from typing import Annotated
 import numpy as np
 import typer
 
+from benchmarks.simulated_tests import simulate
 from robobt.cli.common import MAX_SEED, Json, Progress, console, print_json, say, table
 from robobt.config.extras import need
 from robobt.tournament.sequential import SequentialTest
-from robobt.tournament.simulated import simulate
 
 
 def sprt(

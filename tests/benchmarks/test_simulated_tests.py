@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from benchmarks.simulated_tests import round_chances, simulate
 from robobt.tournament.ratings import expected_score
 from robobt.tournament.sequential import SCORES, SequentialTest
-from robobt.tournament.simulated import round_chances, simulate
 
 
 @pytest.mark.parametrize("elo", [-200.0, 0.0, 30.0, 60.0])
