@@ -157,6 +157,7 @@ def serve(
 
     if live and in_step:
         raise typer.BadParameter("cannot be shown live", param_hint="--in-step")
+    make_folders({"--log": log})
     served, rules = line_up.served(scenario, pictures.seed)
     with ExitStack() as stack:
         writer = None if log is None else stack.enter_context(LogWriter(log))

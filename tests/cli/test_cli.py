@@ -67,7 +67,7 @@ def complaint(*arguments: str | Path, code: int = 1) -> str:
     return result.stderr
 
 
-def help_of(command: str) -> str:
+def help_of(command: str = "") -> str:
     return " ".join(robobt(*command.split(), "--help").stdout.replace("│", " ").split())
 
 
@@ -486,7 +486,7 @@ class TestTree:
 class TestErrors:
     def test_a_command_that_has_moved_says_how_it_is_run_now(self):
         run = subprocess.run([sys.executable, "-m", "robobt", "tree", "x"], capture_output=True, text=True)
-        assert (run.returncode, run.stderr) == (2, "'robobt tree' is 'robobt show' now\n")
+        assert (run.returncode, run.stderr) == (2, "'robobt tree' is 'robobt show' now: robobt show x\n")
 
     def test_a_missing_scenario_is_named_and_those_there_are(self):
         assert complaint("match", "nowhere").startswith("robobt: nowhere: no such file or bundled scenario; ")
@@ -513,10 +513,13 @@ class TestErrors:
         assert "name" in complaint("match", scenario)
 
     def test_a_file_that_is_no_recording(self, scenario: Path):
-        assert complaint("show", scenario).startswith(f"robobt: {scenario}")
+        recording = scenario.with_name("mine.robobt.arrows")
+        scenario.rename(recording)
+        assert complaint("show", recording).startswith(f"robobt: {recording}")
 
     def test_a_file_that_is_not_there(self):
-        assert "nowhere.jsonl" in complaint("show", "nowhere.jsonl")
+        assert "nowhere.log" in complaint("show", "nowhere.log")
+        assert "nothing is called 'nowhere.jsonl'" in complaint("show", "nowhere.jsonl", code=2)
 
     def test_a_place_that_cannot_be_written(self, scenario: Path, tmp_path: Path):
         (tmp_path / "file").write_text("")

@@ -72,7 +72,7 @@ def test_long_variants_are_told_apart_on_a_narrow_screen(monkeypatch: pytest.Mon
     assert "…" not in shown
     names = [line.split()[0] for line in table.splitlines() if line[:1].strip()]
     name = ["attack_main:", "dribble_speed=1.25,"]
-    assert names[names.index(name[0]) :][:6] == [*name, "speed=0.5", *name, "speed=0.75"]
+    assert names[names.index(name[0]) :][:6] == [*name, "speed_factor=0.5", *name, "speed_factor=0.75"]
 
 
 @pytest.mark.integration

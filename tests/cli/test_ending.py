@@ -193,10 +193,10 @@ def test_a_match_over_workers_leaves_none_and_keeps_its_recording(
 @pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT])
 def test_a_server_ends_with_a_complete_log(tmp_path: Path, number: int) -> None:
     ends, log = free_endpoints(), tmp_path / "sent.log.gz"
-    where = [f"--vision={ends.vision}", f"--tracker={ends.tracker}", f"--publish={ends.referee}"]
+    where = [f"--vision={ends.vision}", f"--tracker={ends.tracker}", f"--referee-address={ends.referee}"]
     ports = [f"--{name}-port=0" for name in ("grsim", "control", "blue", "yellow")]
     with told_when(lambda: large(log), number):
-        ended = robobt("serve", *where, *ports, "--speed", 10, "--log", log, "--json")
+        ended = robobt("serve", *where, *ports, "--speed-factor", 10, "--log", log, "--json")
     assert ended.exit_code == 0
     frames = json.loads(ended.stdout)["frames"]
     # The last one may have been simulated and not yet sent when the signal came.
@@ -207,7 +207,7 @@ def test_a_server_ends_with_a_complete_log(tmp_path: Path, number: int) -> None:
 @pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT])
 def test_a_logger_ends_with_a_complete_log(tmp_path: Path, number: int) -> None:
     ends, log = free_endpoints(), tmp_path / "heard.log.gz"
-    where = [f"--vision={ends.vision}", f"--tracker={ends.tracker}", f"--referee={ends.referee}"]
+    where = [f"--vision={ends.vision}", f"--tracker={ends.tracker}", f"--referee-address={ends.referee}"]
     with served(served_line_up(DIVISION_B, 1), ends, speed=5.0), told_when(lambda: large(log), number):
         ended = robobt("log", log, *where, "--json")
     assert ended.exit_code == 0
@@ -217,9 +217,20 @@ def test_a_logger_ends_with_a_complete_log(tmp_path: Path, number: int) -> None:
 
 def test_a_server_ends_with_a_complete_log_when_its_terminal_closes(tmp_path: Path) -> None:
     ends, log = free_endpoints(), tmp_path / "sent.log"
-    where = [f"--vision={ends.vision}", f"--tracker={ends.tracker}", f"--publish={ends.referee}"]
+    where = [f"--vision={ends.vision}", f"--tracker={ends.tracker}", f"--referee-address={ends.referee}"]
     ports = [f"--{name}-port=0" for name in ("grsim", "control", "blue", "yellow")]
-    command = [sys.executable, "-m", "robobt", "serve", *where, *ports, "--speed", "10", "--log", str(log)]
+    command = [
+        sys.executable,
+        "-m",
+        "robobt",
+        "serve",
+        *where,
+        *ports,
+        "--speed-factor",
+        "10",
+        "--log",
+        str(log),
+    ]
     pid, terminal = pty.fork()
     if pid == 0:
         os.execv(sys.executable, command)

@@ -24,7 +24,7 @@ OUTPUTS = [
     (["show", "attack_main", "--out", "{}/a.xml"], 1000),
     (["show", "{recording}", "--out", "{}/a.gif"], 1000),
     (["show", "{recording}", "--out", "{}/a.html"], 1000),
-    (["record", "export", "{recording}", "--btlog", "--robot", "blue 1", "--out", "{}/a.btlog"], 200),
+    (["record", "export", "{recording}", "--robot", "blue 1", "--out", "{}/a.btlog"], 200),
 ]
 
 

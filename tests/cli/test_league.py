@@ -34,7 +34,12 @@ def robobt(*arguments: object, code: int = 0) -> str:
 def quiet() -> list[str]:
     """Options that keep a server among itself."""
     ends = free_endpoints()
-    return [f"--vision={ends.vision}", f"--tracker={ends.tracker}", f"--publish={ends.referee}", *ANY_PORT]
+    return [
+        f"--vision={ends.vision}",
+        f"--tracker={ends.tracker}",
+        f"--referee-address={ends.referee}",
+        *ANY_PORT,
+    ]
 
 
 @pytest.mark.integration
@@ -48,9 +53,10 @@ def test_serve_says_what_it_served_and_logs_it(tmp_path: Path) -> None:
             *quiet(),
             "--seconds",
             1.0,
-            "--speed",
+            "--speed-factor",
             4,
             "--referee",
+            "own",
             "--log",
             log,
             "--json",
@@ -70,7 +76,9 @@ def test_serve_says_what_it_served_and_logs_it(tmp_path: Path) -> None:
 def test_serve_stamps_its_vision_by_the_clock_that_is_asked_for(tmp_path: Path, clock: str) -> None:
     log = tmp_path / "game.log"
     before = time.time()
-    robobt("serve", "--robots", 1, *quiet(), "--seconds", 0.3, "--clock", clock, "--referee", "--log", log)
+    robobt(
+        "serve", "--robots", 1, *quiet(), "--seconds", 0.3, "--clock", clock, "--referee", "own", "--log", log
+    )
     start = before if clock == "unix" else 0.0
     records = list(read_log(log))
     for record in records:
@@ -120,7 +128,12 @@ def test_serve_in_step_passes_only_the_time_that_is_asked_for() -> None:
     client = threading.Thread(target=ask)
     client.start()
     try:
-        where = [f"--vision={ends.vision}", f"--tracker={ends.tracker}", f"--publish={ends.referee}", *ports]
+        where = [
+            f"--vision={ends.vision}",
+            f"--tracker={ends.tracker}",
+            f"--referee-address={ends.referee}",
+            *ports,
+        ]
         said = json.loads(robobt("serve", "--robots", 1, *where, "--in-step", "--seconds", 2.0, "--json"))
     finally:
         asked.set()
@@ -129,7 +142,7 @@ def test_serve_in_step_passes_only_the_time_that_is_asked_for() -> None:
 
 
 @pytest.mark.parametrize(
-    "command", [["serve", "--tracker"], ["serve", "--publish"], ["log", "x.log", "--vision"]]
+    "command", [["serve", "--tracker"], ["serve", "--referee-address"], ["log", "x.log", "--vision"]]
 )
 def test_an_address_that_is_none_is_told_with_its_option(command: list[str]) -> None:
     said = " ".join(robobt(*command, "here", "--seconds", 0.1, code=2).replace("│", " ").split())
@@ -146,7 +159,7 @@ def test_a_port_that_is_taken_is_one_plain_line() -> None:
 @pytest.mark.parametrize(
     ("arguments", "problem"),
     [
-        (["serve", "--preset", "moon"], "no simulator preset is called 'moon'"),
+        (["serve", "--simulator", "moon"], "no simulator preset is called 'moon'"),
         (["serve", "--realism", "moon"], "no realism level is called 'moon'"),
         (["serve", "--interface", "203.0.113.7"], "203.0.113.7"),
         (
@@ -174,7 +187,7 @@ def test_a_spoilt_log_is_named(tmp_path: Path) -> None:
 
 def test_log_writes_what_is_heard(tmp_path: Path) -> None:
     ends = free_endpoints()
-    where = [f"--vision={ends.vision}", f"--tracker={ends.tracker}", f"--referee={ends.referee}"]
+    where = [f"--vision={ends.vision}", f"--tracker={ends.tracker}", f"--referee-address={ends.referee}"]
     out = tmp_path / "heard.log"
     printed = json.loads(robobt("log", out, "--seconds", 0.1, *where, "--json"))
     assert printed == {"vision": 0, "tracker": 0, "referee": 0}

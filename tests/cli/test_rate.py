@@ -47,7 +47,9 @@ def test_a_runs_policies_are_rated_beside_scripts(tmp_path):
         assert one["won"] + one["drawn"] + one["lost"] == 4 * 6
     # Folders of one name are two runs, and who is given twice is there once.
     shutil.copytree(run, other)
-    told = rate(run, other, run, "--past", 0, "--script", "still", "--script", "still", "-n", 1, "--json")
+    told = rate(
+        run, other, run, "--past", 0, "--script", "still", "--script", "still", "--starts", 1, "--json"
+    )
     assert set(json.loads(told.stdout)["ratings"]) == {f"{run} best", f"{other} best", "still"}
     for arguments, said in (
         ((run, "--script", "dance"), "no script 'dance'"),

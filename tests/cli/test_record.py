@@ -3,7 +3,7 @@ from dataclasses import asdict
 from pathlib import Path
 
 import pytest
-from typer.testing import CliRunner
+from typer.testing import CliRunner, Result
 
 from robobt.cli import app
 from robobt.config.resources import bundled_scenarios
@@ -25,22 +25,34 @@ def recording(tmp_path: Path) -> Path:
     return path
 
 
-def test_a_log_is_written_beside_the_recording_and_a_robot_without_a_tree_is_refused(recording: Path) -> None:
-    done = CliRunner().invoke(app, ["record", "export", "--btlog", str(recording), "--robot", "blue 1"])
-    assert done.exit_code == 0
-    assert (recording.parent / "made-blue-1.btlog").read_bytes().startswith(b"BTCPP4-FileLogger2\x01")
-    assert CliRunner().invoke(app, ["record", "export", "--btlog", str(recording)]).exit_code == 2
-    refused = CliRunner().invoke(app, ["record", "export", "--btlog", str(recording), "--robot", "blue 4"])
-    assert refused.exit_code == 2
+def exported(recording: Path, name: str, *options: str) -> Result:
+    out = str(recording.parent / name)
+    return CliRunner().invoke(app, ["record", "export", str(recording), "--out", out, *options])
 
 
-def test_an_mcap_file_is_written_beside_the_recording(recording: Path) -> None:
-    done = CliRunner().invoke(app, ["record", "export", "--mcap", str(recording)])
+def test_a_log_of_a_robots_tree_is_written_and_a_robot_without_a_tree_is_refused(recording: Path) -> None:
+    assert exported(recording, "a.btlog", "--robot", "blue 1").exit_code == 0
+    assert (recording.parent / "a.btlog").read_bytes().startswith(b"BTCPP4-FileLogger2\x01")
+    assert exported(recording, "b.btlog").exit_code == 2
+    assert exported(recording, "b.btlog", "--robot", "blue 4").exit_code == 2
+    assert not (recording.parent / "b.btlog").exists()
+
+
+def test_an_mcap_file_holds_the_whole_match(recording: Path) -> None:
+    pytest.importorskip("mcap")
+    done = exported(recording, "a.mcap")
     assert done.exit_code == 0, done.stderr
-    assert (recording.parent / "made.mcap").read_bytes().startswith(b"\x89MCAP0\r\n")
-    assert CliRunner().invoke(app, ["record", "export", str(recording)]).exit_code == 2
-    same = ["record", "export", "--mcap", str(recording), "--out", str(recording)]
-    assert CliRunner().invoke(app, same).exit_code == 2
+    assert (recording.parent / "a.mcap").read_bytes().startswith(b"\x89MCAP0\r\n")
+    assert exported(recording, "b.mcap", "--robot", "blue 1").exit_code == 2
+
+
+@pytest.mark.parametrize("name", ["a.txt", "made.robobt.arrows"])
+def test_the_format_is_in_the_ending(recording: Path, name: str) -> None:
+    before = recording.read_bytes()
+    done = exported(recording, name)
+    assert done.exit_code == 2
+    assert "takes a name that ends in .mcap or .btlog" in done.output
+    assert recording.read_bytes() == before
 
 
 def test_a_tick_that_cannot_be_a_case_is_one_line_on_stderr(recording: Path) -> None:

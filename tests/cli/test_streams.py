@@ -74,7 +74,7 @@ def test_a_list_of_scenarios_loses_no_text_on_a_narrow_screen(monkeypatch: pytes
     def printed(width: int) -> str:
         narrow = Console(width=width, file=StringIO())
         monkeypatch.setattr(scenarios, "console", narrow)
-        scenarios.scenarios()
+        scenarios.list_scenarios(as_json=False)
         return "".join(sorted("".join(narrow.file.getvalue().split())))  # type: ignore[attr-defined]
 
     assert printed(12) == printed(40) == printed(1000)

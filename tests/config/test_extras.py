@@ -61,7 +61,7 @@ def test_a_light_installation_plays() -> None:
         ("match striker_vs_goalkeeper --trials 1 --record out/x.html", "record"),
         ("train go_to_ball", "learn"),
         ("serve striker_vs_goalkeeper --seconds 1", "league"),
-        ("collect shots -n 1 --out x.parquet", "shots"),
+        ("shots collect --count 1 --out x.parquet", "shots"),
         ("match six_v_six --live", "live"),
         ("tournament run team_player field_player", "tournament"),
     ],

@@ -39,8 +39,8 @@ def where(picture: Image.Image, colour: tuple[int, int, int]) -> tuple[float, fl
 
 def test_a_picture_shows_robots_and_ball_where_they_were(recording: Recording, tmp_path: Path) -> None:
     path = tmp_path / "new folder" / "moment.png"
-    made = f"robobt: --png: made the folder {path.parent}\n"
-    assert replay(recording, "--png", path, "--from", "0.5") == f"{made}Picture: {path}\n"
+    made = f"robobt: --out: made the folder {path.parent}\n"
+    assert replay(recording, "--out", path, "--from", "0.5") == f"{made}Picture: {path}\n"
     frame = recording.frame(int(np.searchsorted(recording.times, 0.5, side="right")) - 1)
     with Image.open(path) as picture:
         assert where(picture, BLUE) == pytest.approx(frame.own[0].position, abs=0.03)
@@ -49,8 +49,8 @@ def test_a_picture_shows_robots_and_ball_where_they_were(recording: Recording, t
 
 
 def test_a_robots_tree_stands_beside_the_field(recording: Recording, tmp_path: Path) -> None:
-    replay(recording, "--png", tmp_path / "bare.png")
-    replay(recording, "--png", tmp_path / "tree.png", "--robot", "blue 0")
+    replay(recording, "--out", tmp_path / "bare.png")
+    replay(recording, "--out", tmp_path / "tree.png", "--robot", "blue 0")
     with Image.open(tmp_path / "bare.png") as bare, Image.open(tmp_path / "tree.png") as tree:
         panel = np.asarray(tree)[:, bare.width :]
         assert bare.height == tree.height
@@ -61,7 +61,7 @@ def test_a_robots_tree_stands_beside_the_field(recording: Recording, tmp_path: P
 
 def test_an_animation_takes_as_long_as_what_it_shows(recording: Recording, tmp_path: Path) -> None:
     path = tmp_path / "part.gif"
-    assert replay(recording, "--gif", path, "--from", "0.2", "--to", "0.92") == f"Animation: {path}\n"
+    assert replay(recording, "--out", path, "--from", "0.2", "--to", "0.92") == f"Animation: {path}\n"
     with Image.open(path) as animation:
         shown = [picture.copy() for picture in ImageSequence.Iterator(animation)]
         assert animation.info["loop"] == 0
@@ -75,12 +75,12 @@ def test_an_animation_takes_as_long_as_what_it_shows(recording: Recording, tmp_p
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
-        (["--png", "x.png", "--from", "9"], "holds 0.00 to 1.00 s, not 9 s"),
-        (["--gif", "x.gif", "--from", "0.5", "--to", "0.5"], "are no animation"),
-        (["--gif", "x.gif", "--robot", "blue 7"], "no tree was recorded of 'blue 7'"),
+        (["--out", "x.png", "--from", "9"], "holds 0.00 to 1.00 s, not 9 s"),
+        (["--out", "x.gif", "--from", "0.5", "--to", "0.5"], "are no animation"),
+        (["--out", "x.gif", "--robot", "blue 7"], "no tree was recorded of 'blue 7'"),
         (["--to", "3"], "does nothing here"),
         (["--robot", "blue 0"], "does nothing here"),
-        (["--live", "--gif", "x.gif"], "does nothing here"),
+        (["--live", "--out", "x.gif"], "does nothing here"),
     ],
 )
 def test_what_cannot_be_shown_is_said(

@@ -58,13 +58,12 @@ def test_a_licence_that_nobody_told_is_left_out() -> None:
 
 
 def test_the_page_is_written_beside_a_model(tmp_path: Path) -> None:
-    done = CliRunner().invoke(app, ["models", "duel_ppo", "--out", str(tmp_path / "README.md")])
+    done = CliRunner().invoke(app, ["show", "duel_ppo", "--out", str(tmp_path / "README.md")])
     assert done.exit_code == 0, done.stderr
     metadata, _ = split((tmp_path / "README.md").read_text())
     assert metadata["license"] == "mit"
     own = tmp_path / "mine.pt"
     own.write_bytes((models_folder() / "duel_ppo.pt").read_bytes())
-    done = CliRunner().invoke(app, ["models", str(own), "--out", str(tmp_path / "own.md")])
+    done = CliRunner().invoke(app, ["show", str(own), "--out", str(tmp_path / "own.md")])
     assert "add the model's license" in " ".join(done.output.split())
     assert "license" not in split((tmp_path / "own.md").read_text())[0]
-    assert CliRunner().invoke(app, ["models", "--out", str(tmp_path / "all.md")]).exit_code == 2

@@ -71,7 +71,7 @@ def test_the_goalkeeper_is_that_of_the_collection_scenario(speed: str, factor: f
     assert keeper.limits == collected.limits
     assert keeper.limits is not None
     assert keeper.limits.max_speed == 2.25
-    assert keeper.params["speed"] == collected.params["speed"] == factor
+    assert keeper.params["speed_factor"] == collected.params["speed_factor"] == factor
     assert sim_world(scenario).settings.kicker.max_speed == 7.5
 
 

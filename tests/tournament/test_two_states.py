@@ -142,7 +142,19 @@ QUICK = ("--scenario", "striker_vs_goalkeeper", "--set", "ends.time_limit=0.3", 
 
 def test_a_sequential_test_compares_two_states(teams: tuple[str, str]) -> None:
     old, new = teams
-    given = ["tournament", f"{new}:speed=1.5", "--against", old, "--sprt", "0", "30", *QUICK, "--rounds", "1"]
+    given = [
+        "tournament",
+        "run",
+        f"{new}:speed=1.5",
+        "--against",
+        old,
+        "--sprt",
+        "0",
+        "30",
+        *QUICK,
+        "--rounds",
+        "1",
+    ]
     for _ in range(2):
         shown = CliRunner().invoke(app, [*given, "--out", "ci.sqlite", "--json"])
         assert shown.exit_code == 2, shown.output
@@ -168,8 +180,19 @@ def test_the_command_of_the_documentation_compares_them(
 def test_a_sweep_tunes_one_state_against_another(teams: tuple[str, str]) -> None:
     pytest.importorskip("optuna")
     old, new = teams
-    sizes = ("--candidates", "2", "--at-once", "2", "--rounds", "1", "--confirm-rounds", "0")
-    given = ["sweep", new, "--vary", "speed=0.5,1.5", "--against", old, *sizes, *QUICK, "--json"]
+    sizes = ("--candidates", "2", "--concurrent", "2", "--rounds", "1", "--confirm-rounds", "0")
+    given = [
+        "tournament",
+        "sweep",
+        new,
+        "--vary",
+        "speed=0.5,1.5",
+        "--against",
+        old,
+        *sizes,
+        *QUICK,
+        "--json",
+    ]
     shown = CliRunner().invoke(app, given)
     said = json.loads(shown.stdout)
     assert (shown.exit_code, said["failed"]) == (1, {}), shown.output

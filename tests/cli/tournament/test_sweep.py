@@ -16,7 +16,7 @@ from robobt.tournament.played import PlayedMatch, SideResult
 from robobt.world.game import Team
 from tests.tournament.made_up import played
 
-QUICK = ("--scenario", "striker_vs_goalkeeper", "--candidates", "6", "--at-once", "2", "--rounds", "3")
+QUICK = ("--scenario", "striker_vs_goalkeeper", "--candidates", "6", "--concurrent", "2", "--rounds", "3")
 
 
 def invoke(*options: object) -> Result:
@@ -116,7 +116,7 @@ def test_what_cannot_be_swept_is_told_in_one_line(options: tuple[str, ...], prob
 
 @pytest.mark.usefixtures("_decided")
 @pytest.mark.parametrize(
-    "where", ["robobt.tournament.sweeps.search._judge", "robobt.tournament.sweeps.sweep.play"]
+    "where", ["robobt.tournament.sweeps.search._judge", "robobt.tournament.sweeps.sweep.play_tournament"]
 )
 def test_ctrl_c_while_nothing_is_played_tells_what_was_kept(
     where: str, monkeypatch: pytest.MonkeyPatch, tmp_path: Path

@@ -41,7 +41,7 @@ def test_a_tournament_is_played_kept_told_and_reported(tmp_path: Path) -> None:
         "--out",
         store,
     )
-    shown = invoke(*given, "--html", page, "--record", "worst", "--json")
+    shown = invoke(*given, "--html", page, "--recordings", "worst", "--json")
     assert shown.exit_code == 0, shown.output
     said = json.loads(shown.stdout)
     assert (said["matches"], said["distinct"], said["failed"]) == (6, 6, {})
@@ -155,10 +155,10 @@ def test_a_folder_in_the_place_of_a_report_is_refused_before_the_first_match(tmp
         (("take_shot", "attack_nn", "--scenario", "gone"), "no such file or bundled scenario"),
         (("take_shot", "attack_nn", "--scenario", "table4_trial1"), "where yellow has no robot"),
         (("take_shot", "attack_nn", "--set", "ends.time=3"), "ends.time: there is no such field"),
-        (("take_shot", "attack_nn", "--record", "all"), "needs --out"),
+        (("take_shot", "attack_nn", "--recordings", "all"), "needs --out"),
         (("take_shot", "attack_nn", "--referee", "none"), "must be own or official"),
         (("take_shot", "attack_nn", "--alpha", "0.1"), "--alpha, --beta: are for --sprt"),
-        (("take_shot", "attack_nn", "--speed", "2"), "--speed: is for matches with programs"),
+        (("take_shot", "attack_nn", "--speed-factor", "2"), "--speed-factor: is for matches with programs"),
         (("take_shot", "attack_nn", "--sprt", "0", "30"), "needs one entrant, and --against"),
         (("take_shot", "--against", "attack_nn", "--sprt", "30", "0"), "elo0 must be below elo1"),
         (("take_shot", "--against", "attack_nn", "--sprt", "0", "inf"), "both within ±1000, not 0 and inf"),

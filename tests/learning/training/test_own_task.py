@@ -48,7 +48,7 @@ def test_a_task_in_ones_own_folder_goes_all_the_way(
         return printed
 
     # Two seeds in workers of their own, one of which is killed and goes on.
-    whole = json.loads(run(*TRAIN, "-n", "2", "-w", "2", "--out", "whole", "--json"))
+    whole = json.loads(run(*TRAIN, "--seeds", "2", "-w", "2", "--out", "whole", "--json"))
     broken = start_python(*TRAIN, "--out", "broken")
     while not Path("broken/seed_0/checkpoint").exists() and broken.poll() is None:
         time.sleep(0.01)

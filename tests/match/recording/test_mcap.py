@@ -15,7 +15,7 @@ from foxglove_schemas_protobuf.SceneEntityDeletion_pb2 import SceneEntityDeletio
 from mcap.reader import make_reader
 from mcap_protobuf.decoder import DecoderFactory
 
-from robobt.match import Match
+from robobt.match import MatchLoop
 from robobt.match.recording import Recording, load_recording
 from robobt.match.recording.mcap import write_mcap
 from robobt.match.scenario.scenario import load_scenario
@@ -51,7 +51,7 @@ def written(recording: Recording, folder: Path) -> Messages:
 
 def test_topics_counts_and_times_of_a_match_are_those_of_its_recording(tmp_path: Path) -> None:
     scenario = load_scenario("three_v_three").lasting(1.0)
-    with Match(scenario, 3, sim_world, tmp_path / "m.robobt.arrows", layers=("paths",)) as match:
+    with MatchLoop(scenario, 3, sim_world, tmp_path / "m.robobt.arrows", layers=("paths",)) as match:
         match.play()
     recording = load_recording(tmp_path / "m.robobt.arrows")
     assert recording.observed is not None

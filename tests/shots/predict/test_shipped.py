@@ -88,7 +88,7 @@ def test_a_predictor_for_a_few_shots_rates_shots_in_play(tmp_path: Path):
 def test_a_model_that_is_there_is_not_written_over_unless_told(tmp_path: Path):
     data = tmp_path / "shots.parquet"
     write_shots(made_up_table(200), data)
-    command = ["shots", "train", "--data", str(data), "--model", "shot_best", "--out", str(tmp_path)]
+    command = ["shots", "train", "--data", str(data), "--predictor", "shot_best", "--out", str(tmp_path)]
     assert CliRunner().invoke(app, command).exit_code == 0
     before = (tmp_path / "shot_best.pt").read_bytes()
     refused = CliRunner().invoke(app, [*command, "--seed", "1"])
@@ -143,13 +143,13 @@ def test_a_mirrored_scene_gets_the_same_answer():
 def test_training_and_map_are_commands(tmp_path: Path):
     data = tmp_path / "shots.parquet"
     write_shots(made_up_table(200), data)
-    options = ["shots", "train", "--data", str(data), "--model", "shot_expected", "--epochs", "2"]
+    options = ["shots", "train", "--data", str(data), "--predictor", "shot_expected", "--epochs", "2"]
     said = CliRunner().invoke(app, [*options, "--out", str(tmp_path / "models"), "--json"])
     assert said.exit_code == 0, said.output
     figures = json.loads(said.output)
     assert Path(figures["file"]).is_file()
     drawn = ["shots", "map", "--model", figures["file"], "--spacing", "1.0"]
-    shown = CliRunner().invoke(app, [*drawn, "--picture", str(tmp_path / "map.png")])
+    shown = CliRunner().invoke(app, [*drawn, "--out", str(tmp_path / "map.png")])
     assert shown.exit_code == 0, shown.output
 
 
