@@ -158,7 +158,7 @@ def test_it_finds_its_scenarios_and_models_outside_the_checkout(unpacked: Path, 
     # It plays there in the slow test above: what is installed anew is compiled anew.
     found = run(unpacked, tmp_path, "import robobt; print(robobt.__file__)")
     assert found.startswith(str(unpacked))
-    names = run(unpacked, tmp_path, "from robobt.cli import app; app(['scenarios', '--json'])")
+    names = run(unpacked, tmp_path, "from robobt.cli import app; app(['list', 'scenarios', '--json'])")
     assert "striker_vs_goalkeeper" in names
     told = run(unpacked, tmp_path, "from robobt.cli import app; app(['models', 'duel_ppo', '--json'])")
     assert json.loads(told)["models"][0]["file"].startswith(str(unpacked))
