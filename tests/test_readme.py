@@ -48,7 +48,9 @@ def test_the_two_commands_exist() -> None:
 def test_the_robobt_commands_run_one_after_the_other(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """As they stand there, but that matches and evaluations are shorter."""
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr("robobt.match.load_scenario", lambda source: load_scenario(source).lasting(20.0))
+    monkeypatch.setattr(
+        "robobt.match.load_scenario", lambda source, **how: load_scenario(source, **how).lasting(20.0)
+    )
     fewer = [option for name in ("starts", "held_out") for option in ("--set", f"evaluation.{name}=20")]
     for command in commands(TOUR):
         program, arguments = program_and_words(command)

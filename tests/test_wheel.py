@@ -160,5 +160,5 @@ def test_it_finds_its_scenarios_and_models_outside_the_checkout(unpacked: Path, 
     assert found.startswith(str(unpacked))
     names = run(unpacked, tmp_path, "from robobt.cli import app; app(['list', 'scenarios', '--json'])")
     assert "striker_vs_goalkeeper" in names
-    told = run(unpacked, tmp_path, "from robobt.cli import app; app(['models', 'duel_ppo', '--json'])")
+    told = run(unpacked, tmp_path, "from robobt.cli import app; app(['show', 'duel_ppo', '--json'])")
     assert json.loads(told)["models"][0]["file"].startswith(str(unpacked))
