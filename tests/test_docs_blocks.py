@@ -226,6 +226,8 @@ LESS = {
     r"(paper table4)(?!.*--runs)": r"\1 --runs 1",
     r"--runs \d+": "--runs 1",
     r"paper deployed": "paper deployed --shots 1 --only attack_main --defenders 0",
+    r"--from 12\.5": "--from 1.5",
+    r"--from 10 --to 20": "--from 0.5 --to 1.5",
     r"\bFOLDER\b": str(DOCS.parent / "models" / "paper_shots.parquet"),
     r"\bMODEL\b": "models/score.pt",
 }
