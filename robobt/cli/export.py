@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 def export(
     run: Annotated[Path, typer.Argument(help="What 'robobt train' wrote: its folder, or that of one seed.")],
-    name: Annotated[str, option("--name", "; by default the task's with _ddpg")] = "",
+    name: Annotated[str, option("--name", "; by default task and algorithm, as in duel_ppo")] = "",
     onnx: Annotated[bool, option("--onnx", ", beside the TorchScript file")] = False,
     out: Annotated[Path | None, option("--out", "; by default in the run's folder", metavar="FOLDER")] = None,
     force: Annotated[bool, option("--force")] = False,

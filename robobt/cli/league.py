@@ -54,9 +54,9 @@ class LineUp:
     field: Annotated[str, option("--field", ", without a scenario")] = "division_b"
     simulator: Annotated[str | None, option("--simulator", "; by default the scenario's, or grsim")] = None
     realism: Annotated[str | None, option("--realism", "; by default the preset's")] = None
-    referee: Annotated[FieldReferee, option("--referee", ", whose messages are published")] = (
-        FieldReferee.NONE
-    )
+    referee: Annotated[
+        FieldReferee, option("--referee", ": own (robobt's, whose messages are published) or none")
+    ] = FieldReferee.NONE
 
     def served(self, scenario: str | None, seed: int) -> tuple[ServedField, RefereeSettings | None]:
         """Return the field to serve, and a referee's settings where there is to be one."""
@@ -157,6 +157,7 @@ def serve(
 
     if live and in_step:
         raise typer.BadParameter("cannot be shown live", param_hint="--in-step")
+    page.check(live)
     make_folders({"--log": log})
     served, rules = line_up.served(scenario, pictures.seed)
     with ExitStack() as stack:

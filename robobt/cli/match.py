@@ -215,6 +215,7 @@ def match(
     from robobt.worlds import scenario_settings
 
     where.check()
+    page.check(where.live)
     loaded, referees = refereeing.of(_changed(changes.scenario(scenario), trees))
     # The simulator's settings are checked before any worker is started.
     scenario_settings(loaded)

@@ -77,9 +77,11 @@ def what_became(words: Sequence[str]) -> str | None:
             return f"'robobt {old}' is '{now}' now{clone}: {f'{now} {rest}'.rstrip()}"
     if first == "tournament" and len(words) > 1 and words[1] not in (*_TOURNAMENT, "--help"):
         rest = shlex.join(words[1:])
+        if words[1].endswith((".sqlite", ".db")):
+            return f"robobt tournament results {rest} sums up what a store holds"
         return f"'robobt tournament' is 'robobt tournament run' now: robobt tournament run {rest}"
     if first == "serve" and "--referee" in words and not {"own", "none"} & {*words}:
-        return "'robobt serve --referee' is '--referee own' now"
+        return "robobt serve --referee takes own or none"
     for command in (" ".join(words[:2]), first):
         for word in words:
             option = word.partition("=")[0]

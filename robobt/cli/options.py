@@ -76,7 +76,7 @@ MEANINGS = {
     "--record-layers": "Record what skills draw in these layers too",
     "--record-trial": "Which trial to record, from 0",
     "--recordings": "Which recordings to keep",
-    "--referee": "Who referees: own (robobt's), official (the league's game controller) or none",
+    "--referee": "Who referees",
     "--referee-address": "Multicast address of the referee's messages",
     "--resume": "Continue a run that was stopped",
     "--robot": "Which robot's tree, as in 'blue 0'",

@@ -9,12 +9,18 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated
 
+import typer
+
 from robobt.cli.common import say, warn
 from robobt.cli.options import option
 from robobt.config.extras import need
 
 if TYPE_CHECKING:
     from robobt.live.server import Server
+
+
+LOOPBACK_HOST = "127.0.0.1"
+"""This machine alone."""
 
 
 @dataclass(frozen=True)
@@ -28,9 +34,20 @@ class Page:
             ". With any other than this machine's own, whoever can reach it and knows the page's address "
             "watches and steers, unencrypted",
         ),
-    ] = "127.0.0.1"
+    ] = LOOPBACK_HOST
     port: Annotated[int, option("--port", min=0, max=65535)] = 0
     open_page: Annotated[bool | None, option("--open")] = None
+
+    def check(self, live: bool) -> None:
+        """Refuse options that would do nothing without --live."""
+        given = {
+            "--host": self.host != LOOPBACK_HOST,
+            "--port": self.port != 0,
+            "--open": self.open_page is not None,
+        }
+        for name, there in given.items():
+            if there and not live:
+                raise typer.BadParameter("is for --live", param_hint=name)
 
     @contextmanager
     def server(self) -> Iterator[Server]:

@@ -42,7 +42,11 @@ class Refereeing:
 
     referee: Annotated[
         Who | None,
-        option("--referee", "; by default as in the scenario, and none where the world brings a referee"),
+        option(
+            "--referee",
+            ": own (robobt's), official (the league's game controller, stepped with the match) or none; by "
+            "default as in the scenario, and none where the world brings a referee",
+        ),
     ] = None
     game_controller: Annotated[
         Path | None,

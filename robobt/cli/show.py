@@ -86,6 +86,7 @@ def show(
     import_files(imports)
     what = kind or _kind_of(name)
     _check(what, out, examined, shown, as_json=as_json)
+    page.check(shown.live)
     make_folders({"--out": out})
     if what is ThingKind.RECORDING:
         show_recording.show_recording(Path(name), out, shown, page)
@@ -154,7 +155,9 @@ def _kind_of(name: str) -> ThingKind:
         there = f"{name!r} is a {' and a '.join(found)}; choose with --kind"
         raise typer.BadParameter(there, param_hint="NAME")
     if not found:
-        raise typer.BadParameter(_nothing(play), param_hint="NAME")
+        others = [kind.value for kind, plural in _PLURALS.items() if registered(plural, play)]
+        there = f"{play!r} is a {others[0]}, which takes no parameters here" if others else _nothing(play)
+        raise typer.BadParameter(there, param_hint="NAME")
     return found[0]
 
 
@@ -167,6 +170,8 @@ def _kind_of_file(name: str) -> ThingKind | None:
         return ThingKind.MODEL
     if lowered.endswith((".xml", ".btproj", ".py")) or ".py:" in name:
         return ThingKind.PLAY
+    if lowered.endswith((".html", ".htm")):
+        raise typer.BadParameter("is a page: open it in a browser", param_hint="NAME")
     if lowered.endswith((".yaml", ".yml")):
         from robobt.config.yaml import read_yaml
 

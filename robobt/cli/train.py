@@ -88,6 +88,7 @@ def train(
     from robobt.learning.training.results import figures_of
     from robobt.learning.training.seeds import train_seeds
 
+    page.check(live)
     settings = _settings(task, preset, changes or [])
     folder = out or Path("runs") / f"{task.rpartition(':')[2]}-{Path(preset).stem}"
     make_folders({"--out": folder}, folders=True)

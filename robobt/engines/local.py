@@ -24,6 +24,9 @@ from robobt.signals import TERMINATE, ending, let_go, uninterrupted
 _REACTION = 0.4
 """Time for a worker to finish its files when asked to end [s]."""
 
+_UNGUARDED_EXIT = 86
+"""Exit status of a worker process in which the main script, imported again, would start workers itself."""
+
 _WORKER_POLL = 1.0
 """Interval for checking workers whose connection stays open after their end, held by a forked process [s]."""
 
@@ -45,6 +48,8 @@ def run_locally(
     finish its files.
     """
     report = on_report or _ignore
+    if workers > 1 and getattr(multiprocessing.current_process(), "_inheriting", False):
+        os._exit(_UNGUARDED_EXIT)
     if workers < (2 if lost is None else 1):
         for task in tasks:
             yield work.attempt(task, report)
@@ -71,6 +76,11 @@ def run_locally(
                 except (EOFError, OSError):
                     worker.process.join()
                     died = f"its worker process died (exit code {worker.process.exitcode})"
+                    if worker.process.exitcode == _UNGUARDED_EXIT:
+                        died = (
+                            "its worker process ran the script that starts the workers; put the script's "
+                            'calls under if __name__ == "__main__":'
+                        )
                     if lost is None:
                         raise work.error(f"{work.noun} {worker.held[0]}: {died}") from None
                     crew.remove(worker)

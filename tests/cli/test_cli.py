@@ -471,6 +471,13 @@ class TestTree:
     def test_counting_needs_a_robot_with_the_play(self, scenario: Path):
         assert "no robot plays 'goalkeeper'" in complaint("show", "goalkeeper", "--statistics", scenario)
 
+    def test_a_skill_is_told_to_be_one_where_parameters_are_given(self):
+        said = " ".join(complaint("show", "KickToTarget:speed_factor=2", code=2).split())
+        assert "'KickToTarget' is a skill, which takes no parameters here" in said
+
+    def test_a_page_is_opened_in_a_browser(self):
+        assert "open it in a browser" in complaint("show", "match.html", code=2)
+
     def test_a_seed_is_for_counting(self):
         assert "is for --statistics" in complaint("show", "goalkeeper", "--seed", "1", code=2)
 
@@ -534,6 +541,10 @@ class TestErrors:
     )
     def test_wrong_options_are_usage_errors(self, scenario: Path, arguments: list[str]):
         assert "Usage:" in complaint("match", scenario, *arguments, code=2)
+
+    @pytest.mark.parametrize("option", [["--port", "8765"], ["--no-open"], ["--paused"]])
+    def test_options_of_the_live_page_need_it(self, scenario: Path, option: list[str]):
+        assert "is for --live" in complaint("match", scenario, *option, code=2)
 
     def test_debug_shows_where(self):
         result = CliRunner().invoke(app, ["--debug", "match", "nowhere"])

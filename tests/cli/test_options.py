@@ -75,7 +75,8 @@ def test_a_letter_is_one_option() -> None:
         ("tournament a b", "'robobt tournament' is 'robobt tournament run' now: robobt tournament run a b"),
         ("match x --replay=y.html", "'robobt match --replay' is '--record' now"),
         ("tournament run a b -n 3", "'robobt tournament run -n' is '--rounds' now"),
-        ("serve --referee", "'robobt serve --referee' is '--referee own' now"),
+        ("serve --referee", "robobt serve --referee takes own or none"),
+        ("tournament night.sqlite", "robobt tournament results night.sqlite sums up what a store holds"),
     ],
 )
 def test_an_old_spelling_says_what_it_became(typed: str, said: str) -> None:

@@ -153,7 +153,7 @@ def sweep(
     said = {
         "scenario": base.name,
         "seed": asked.seed,
-        "referee": getattr(referees, "name", "own"),
+        "referee": "none" if base.referee is None else getattr(referees, "name", "own"),
         "against": asked.against.name,
     }
     with as_far_as_read():
@@ -168,7 +168,8 @@ def sweep(
         else:
             console.print(
                 f"[bold]{escape(name)}[/bold] in {escape(base.name)} against {escape(asked.against.name)}: "
-                f"{len(found.matches)} matches, seed {asked.seed}, {said['referee']} referee"
+                f"{len(found.matches)} matches, seed {asked.seed}, "
+                f"{'no' if said['referee'] == 'none' else said['referee']} referee"
             )
             _print(found.swept, best)
             if test is not None:

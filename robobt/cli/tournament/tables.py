@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from robobt.cli.common import console, name_lines, table, warn
+from robobt.cli.common import console, name_lines, say, table, warn
 from robobt.cli.team_figures import team_figures
 
 if TYPE_CHECKING:
@@ -32,7 +32,11 @@ def print_standings(found: Standings) -> None:
     console.print()
     print_encounters(found.encounters)
     console.print()
-    console.print(team_figures({name: one.figures for name, one in found.standings.items()}, "a match"))
+    figures = {name: one.figures for name, one in found.standings.items()}
+    if any(value for counted in figures.values() for value in counted.values()):
+        console.print(team_figures(figures, "a match"))
+    else:
+        say("Passes, possession and the like are counted where the scenario has a referee.")
     for remark in found.remarks():
         warn(remark)
 

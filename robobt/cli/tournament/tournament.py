@@ -62,6 +62,7 @@ _DEFAULT_ROUNDS, _MOST_ROUNDS = 10, 5000
 class KeepOption(StrEnum):
     """Which recordings are kept."""
 
+    NONE = "none"
     WORST = "worst"
     LOST = "lost"
     ALL = "all"
@@ -100,13 +101,13 @@ class KeptMatches:
     out: OutOption = None
     html: Annotated[Path | None, option("--html")] = None
     keep: Annotated[
-        KeepOption | None,
+        KeepOption,
         option(
             "--recordings",
-            " beside --out: the match that goes worst for the first entrant against each other one, those it "
-            "loses, or all",
+            " beside --out: none, the match that goes worst for the first entrant against each other one, "
+            "those it loses, or all",
         ),
-    ] = None
+    ] = KeepOption.NONE
 
     def recordings(self, first: str) -> Recordings | None:
         """Return what keeps recordings, in which ``first`` is the first entrant's name.
@@ -119,7 +120,7 @@ class KeptMatches:
         if self.html is not None and self.out is not None and self.html.resolve() == self.out.resolve():
             there = f"would take the place of the store {self.out}"
             raise typer.BadParameter(there, param_hint="--html")
-        if self.keep is None:
+        if self.keep is KeepOption.NONE:
             return None
         if self.out is None:
             raise typer.BadParameter(
@@ -220,7 +221,7 @@ def run(
     said = {
         "scenario": base.name,
         "seed": plan.seed,
-        "referee": getattr(referees, "name", "own"),
+        "referee": "none" if base.referee is None else getattr(referees, "name", "own"),
         "rounds": plan.rounds,
     }
     tell_code(played.matches)
@@ -253,7 +254,7 @@ def _print(
         return
     console.print(
         f"[bold]{escape(str(said['scenario']))}[/bold]: {found.matches} matches, seed {said['seed']}, "
-        f"{said['referee']} referee"
+        f"{'no' if said['referee'] == 'none' else said['referee']} referee"
     )
     print_standings(found)
     if test is not None:

@@ -58,7 +58,7 @@ def test_a_tournament_is_played_kept_told_and_reported(tmp_path: Path) -> None:
     assert page.read_text().count(".recordings/") == 2
     again = invoke(*given)
     assert again.exit_code == 0
-    assert "striker_vs_goalkeeper: 6 matches, seed 1, own referee" in again.output
+    assert "striker_vs_goalkeeper: 6 matches, seed 1, no referee" in again.output
     assert "won-drawn-lost of the row against the column" in again.output
 
 
