@@ -17,7 +17,7 @@ from robobt.match.refereeing import RefereeFactory, own_referee
 from robobt.match.results.compare import Compared, compare_results
 from robobt.match.results.results import MatchResult
 from robobt.match.runner import Run, run_trials_in
-from robobt.match.scenario.scenario import Scenario
+from robobt.match.scenario.scenario import Scenario, load_scenario
 from robobt.sim import SimSettings, SimWorld, settings_from
 from robobt.world.prediction import PredictedWorld
 from robobt.world.protocol import World
@@ -92,7 +92,7 @@ class Match(MatchLoop):
     """A match that is played tick by tick, in the built-in simulator unless another world is given.
 
     Args:
-        scenario: the scenario to play.
+        scenario: the scenario to play, or a bundled one's name, or a file.
         seed: fixes placement, world and trees; the scenario's by default.
         world: an address as for :func:`world_from`, or a factory.
         record: file to record the match to; its name ends in ``.robobt.arrows``.
@@ -103,18 +103,19 @@ class Match(MatchLoop):
 
     def __init__(
         self,
-        scenario: Scenario,
+        scenario: Scenario | str | Path,
         seed: int | None = None,
         world: str | WorldFactory = SIM,
         record: str | Path | None = None,
         referee: RefereeFactory = own_referee,
     ) -> None:
+        scenario = _scenario(scenario)
         seed = scenario.seed if seed is None else seed
         super().__init__(scenario, seed, _factory(world), record, referee=referee)
 
 
 def play_match(
-    scenario: Scenario,
+    scenario: Scenario | str | Path,
     seed: int | None = None,
     *,
     world: str | WorldFactory = SIM,
@@ -124,7 +125,7 @@ def play_match(
     """Play one match to its end.
 
     Args:
-        scenario: the scenario to play.
+        scenario: the scenario to play, or a bundled one's name, or a file.
         seed: fixes placement, world and trees; the scenario's by default.
         world: an address as for :func:`world_from`, or a factory.
         record: file to record the match to.
@@ -141,7 +142,7 @@ def play_match(
 
 
 def run_trials(
-    scenario: Scenario,
+    scenario: Scenario | str | Path,
     trials: int | None = None,
     *,
     world: str | WorldFactory = SIM,
@@ -157,11 +158,12 @@ def run_trials(
     Errors are those of :func:`robobt.match.runner.run_trials_in`.
 
     Args:
-        scenario: the scenario to play.
+        scenario: the scenario to play, or a bundled one's name, or a file.
         trials: number of trials; the scenario's by default.
         world: an address as for :func:`world_from`, or a factory.
         seed: seed from which the trials' seeds follow; the scenario's by default.
-        workers: number of processes; one is this process itself.
+        workers: number of processes; one is this process itself. With more, a script calls this under
+            ``if __name__ == "__main__":``, because the processes import it.
         out: file to append each result to; trials it holds already are not played again.
         record: files to record trials to, by trial number.
         on_result: called with each result as it finishes.
@@ -171,11 +173,11 @@ def run_trials(
         The results, and their summary.
     """
     factory = _factory(world)
-    return run_trials_in(scenario, factory, trials, workers, seed, out, record, on_result, referee)
+    return run_trials_in(_scenario(scenario), factory, trials, workers, seed, out, record, on_result, referee)
 
 
 def compare(
-    variants: Mapping[str, Scenario],
+    variants: Mapping[str, Scenario | str | Path],
     trials: int | None = None,
     *,
     world: str | WorldFactory = SIM,
@@ -204,16 +206,21 @@ def compare(
     """
     if len(variants) < 2:
         raise ValueError(f"a comparison needs two variants, not {len(variants)}")
-    first = next(iter(variants.values()))
+    scenarios = {label: _scenario(given) for label, given in variants.items()}
+    first = next(iter(scenarios.values()))
     trials = first.trials if trials is None else trials
     seed = first.seed if seed is None else seed
     results = {}
-    for label, scenario in variants.items():
+    for label, scenario in scenarios.items():
         run = run_trials(scenario, trials, world=world, seed=seed, workers=workers, referee=referee)
         if run.interrupted:
             raise KeyboardInterrupt
         results[label] = run.results
     return compare_results(results)
+
+
+def _scenario(given: Scenario | str | Path) -> Scenario:
+    return given if isinstance(given, Scenario) else load_scenario(given)
 
 
 def _factory(world: str | WorldFactory) -> WorldFactory:

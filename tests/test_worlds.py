@@ -1,9 +1,12 @@
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
-from robobt.match import ScenarioError
+import robobt
+from robobt.config.yaml import write_yaml
+from robobt.match import ScenarioError, load_scenario
 from robobt.match.scenario.scenario import scenario_from
 from robobt.sim import preset
 from robobt.world import World
@@ -48,3 +51,14 @@ def test_limits_not_given_are_those_of_the_simulator():
 def test_wrong_settings_name_file_and_field(simulator: dict[str, Any]):
     with pytest.raises(ScenarioError, match=r"^test\.yaml: simulator"):
         world_of(simulator=simulator)
+
+
+@pytest.mark.integration
+def test_a_scenario_is_played_by_its_name_too(tmp_path: Path):
+    given = load_scenario("score_on_defender").lasting(0.5)
+    file = tmp_path / "mine.yaml"
+    file.write_text(write_yaml(data(ends={"time_limit": 0.1})))
+    assert robobt.run_trials(file, 1).summary().trials == 1
+    assert robobt.Match("score_on_defender", 3).scenario.name == given.name
+    with pytest.raises(ScenarioError, match="no such file or bundled scenario"):
+        robobt.play_match("score_on_nobody")
