@@ -32,9 +32,10 @@ class RoundRobin:
     """Who else takes part where policies meet each other."""
 
     round_robin: Annotated[
-        bool, option("--round-robin", ", for tasks in which two teams learn; --script and --play do so too")
+        bool,
+        option("--round-robin", ", where two teams learn; so do --past, --script and --play"),
     ] = False
-    past: Annotated[int, option("--past", ", spread over the run", min=0, max=64)] = 5
+    past: Annotated[int | None, option("--past", ", spread over the run; by default 5", min=0, max=64)] = None
     scripts: Annotated[
         list[str] | None, option("--script", "; by default attack and press, without a play none")
     ] = None
@@ -66,7 +67,7 @@ def evaluate(
     """
     import_files(imports)
     several = list(dict.fromkeys(runs))
-    if meeting.round_robin or meeting.scripts or meeting.plays:
+    if meeting.round_robin or meeting.scripts or meeting.plays or meeting.past is not None:
         _meet([Path(run) for run in several], meeting, starts, seed, as_json=as_json)
         return
     from robobt.learning.agents.networks import one_thread
@@ -76,6 +77,11 @@ def evaluate(
     with one_thread(), errors.status("playing"):
         found = {run: trained_policy(run) for run in several}
         environment = found[several[0]][0]
+        task = make_task(environment, 1).name
+        for run, (other, _) in found.items():
+            if (name := make_task(other, 1).name) != task:
+                there = f"{run} is of the task {name}, {several[0]} of {task}; judge one task at a time"
+                raise typer.BadParameter(there, param_hint="RUNS")
         results = judge(environment, {run: policy for run, (_, policy) in found.items()}, starts, seed)
     if as_json:
         figures = {name: _figures(one) for name, one in results.items()}
@@ -119,7 +125,10 @@ def _meet(runs: list[Path], meeting: RoundRobin, starts: int, seed: int, *, as_j
     default = () if meeting.plays else ("attack", "press")
     given = [script(role) for role in dict.fromkeys(meeting.scripts or default)]
     given += [play(text, *parse_play(text, "--play")) for text in dict.fromkeys(meeting.plays or ())]
-    found = [contenders_of(run, meeting.past, str(run) if len(runs) > 1 else "") for run in runs]
+    found = [
+        contenders_of(run, 5 if meeting.past is None else meeting.past, str(run) if len(runs) > 1 else "")
+        for run in runs
+    ]
     contenders = [*(one for _, policies in found for one in policies), *given]
     with one_thread():
         met = encounters(found[0][0], contenders, starts, seed)

@@ -14,7 +14,7 @@ import typer
 
 from robobt.cli.common import MAX_SEED, Json, print_json, say, warn
 from robobt.cli.options import option
-from robobt.cli.outputs import make_folders
+from robobt.cli.outputs import check_ending, make_folders
 from robobt.cli.page import Page
 from robobt.config.errors import unknown_name
 from robobt.signals import Terminated
@@ -158,6 +158,8 @@ def serve(
     if live and in_step:
         raise typer.BadParameter("cannot be shown live", param_hint="--in-step")
     page.check(live)
+    if log is not None:
+        check_ending("--log", log, ".log", ".log.gz")
     make_folders({"--log": log})
     served, rules = line_up.served(scenario, pictures.seed)
     with ExitStack() as stack:

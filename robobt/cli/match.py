@@ -125,6 +125,8 @@ class KeptTrials:
             file = Path(f"{safe}-{self.record_trial}{RECORDING}")
         if file is not None:
             _check_recording(file, self.out)
+        elif self.record_layers:
+            raise typer.BadParameter("needs --record", param_hint="--record-layers")
         return file
 
 
@@ -240,7 +242,7 @@ def _play_on(
         raise typer.BadParameter(
             "needs --trials; --live records its first match", param_hint="--record-trial"
         )
-    if kept.record is not None and not kept.record.name.endswith(RECORDING):
+    if kept.record is not None and not kept.record.name.lower().endswith(RECORDING):
         there = f"takes a name that ends in {RECORDING} here, not '{kept.record}'"
         raise typer.BadParameter(there, param_hint="--record")
     make_folders({"--record": kept.record})

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import shlex
 from collections.abc import Sequence
+from difflib import get_close_matches
 
 COMMANDS = {
     "bench": "python -m benchmarks",
@@ -64,27 +65,52 @@ def what_became(words: Sequence[str]) -> str | None:
         words: the command line after the program's name.
     """
     words = [word for word in words if word != "--debug"]
-    if words[:1] == ["--engine"]:
-        words = words[2:]
+    if words and words[0].startswith("--engine"):
+        words = words[1 if "=" in words[0] else 2 :]
     first = words[0] if words else ""
     for old, now in COMMANDS.items():
         parts = old.split()
         if list(words[: len(parts)]) == parts:
-            named = len(words) > 1 and not words[1].startswith("-")
-            now = "robobt show" if first in _SHOWN and named else now
+            rest = words[len(parts) :]
+            now = "robobt show" if first in _SHOWN and _names_something(rest) else now
             clone = "" if now.startswith("robobt") else ", in a clone of the repository"
-            rest = shlex.join(words[len(parts) :])
-            return f"'robobt {old}' is '{now}' now{clone}: {f'{now} {rest}'.rstrip()}"
-    if first == "tournament" and len(words) > 1 and words[1] not in (*_TOURNAMENT, "--help"):
-        rest = shlex.join(words[1:])
-        if words[1].endswith((".sqlite", ".db")):
-            return f"robobt tournament results {rest} sums up what a store holds"
-        return f"'robobt tournament' is 'robobt tournament run' now: robobt tournament run {rest}"
+            return f"'robobt {old}' is '{now}' now{clone}{_whole(now, rest)}"
+    if first == "tournament" and len(words) > 1 and not _is_inner(words[1]):
+        rest = words[1:]
+        if rest[0].endswith((".sqlite", ".db")):
+            return f"robobt tournament results {shlex.join(rest)} sums up what a store holds"
+        return f"'robobt tournament' is 'robobt tournament run' now{_whole('robobt tournament run', rest)}"
     if first == "serve" and "--referee" in words and not {"own", "none"} & {*words}:
         return "robobt serve --referee takes own or none"
     for command in (" ".join(words[:2]), first):
         for word in words:
-            option = word.partition("=")[0]
-            if option in OPTIONS.get(command, {}):
-                return f"'robobt {command} {option}' is '{OPTIONS[command][option]}' now"
+            if (became := _option(command, word)) is not None:
+                return f"'robobt {command} {word.partition('=')[0]}' is '{became}' now"
     return None
+
+
+def _option(command: str, word: str) -> str | None:
+    """Return what an option of a command is now, None for a word that is no old option."""
+    options = OPTIONS.get(command, {})
+    letter = word[:2] if word[:1] == "-" and word[1:2] != "-" else ""
+    return options.get(word.partition("=")[0], options.get(letter))
+
+
+def _whole(now: str, rest: Sequence[str]) -> str:
+    """Return the whole line to type, after a colon; nothing where old options do not become single ones."""
+    command = " ".join([word for word in now.split()[1:] if not word.startswith("-")])
+    renewed = [_option(command, word) or word for word in rest]
+    if any(" " in new and new != old for old, new in zip(rest, renewed, strict=True)):
+        return ""
+    return f": {f'{now} {shlex.join(renewed)}'.rstrip()}"
+
+
+def _names_something(rest: Sequence[str]) -> bool:
+    """Return whether a word is neither an option nor the value of one."""
+    values = {place + 1 for place, word in enumerate(rest) if word in ("--import", "--path")}
+    return any(not word.startswith("-") and place not in values for place, word in enumerate(rest))
+
+
+def _is_inner(word: str) -> bool:
+    """Return whether a word is, or is meant to be, a command of the group or a question for help."""
+    return word in ("-h", "--help") or bool(get_close_matches(word, _TOURNAMENT, 1, 0.75))

@@ -6,6 +6,8 @@ import os
 from collections.abc import Mapping
 from pathlib import Path
 
+import typer
+
 from robobt.cli.common import warn
 from robobt.config.errors import ConfigError
 
@@ -15,6 +17,17 @@ RECORDING = ".robobt.arrows"
 PAGE = ".html"
 PAGES = (PAGE, ".htm")
 """How the names of pages end."""
+
+
+def check_ending(option: str, output: Path, *endings: str) -> None:
+    """Refuse a name that is more likely another file's: what is there is replaced.
+
+    Raises:
+        typer.BadParameter: it ends in none of ``endings``.
+    """
+    if not output.name.lower().endswith(endings):
+        there = f"takes a name that ends in {', '.join(endings)}, not '{output}'"
+        raise typer.BadParameter(there, param_hint=option)
 
 
 def make_folders(outputs: Mapping[str, Path | None], *, folders: bool = False) -> None:

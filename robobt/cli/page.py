@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from robobt.cli.common import say, warn
+from robobt.cli.common import errors, warn
 from robobt.cli.options import option
 from robobt.config.extras import need
 
@@ -58,7 +58,8 @@ class Page:
         own = self.host in ("127.0.0.1", "localhost", "::1")
         names = () if own else tuple(_names_of(self.host))
         with Server(self.host, self.port, names) as server:
-            say(f"Live: {server.url}")
+            # What is printed on stdout may be read by a program.
+            errors.print(f"Live: {server.url}", soft_wrap=True)
             if not own:
                 warn(
                     f"the page is open to every machine that can reach {self.host}: whoever has its address "

@@ -20,7 +20,7 @@ from robobt.cli.common import (
     say,
 )
 from robobt.cli.options import option
-from robobt.cli.outputs import RECORDING, make_folders
+from robobt.cli.outputs import RECORDING, check_ending, make_folders
 from robobt.cli.team_figures import team_figures
 from robobt.cli.train import Task
 
@@ -49,15 +49,14 @@ def export(
     """Write a recording in a form that other tools read."""
     from robobt.match.recording import load_recording
 
-    if out.suffix not in (_MCAP, _BTLOG):
-        there = f"takes a name that ends in {_MCAP} or {_BTLOG}, not '{out}'"
-        raise typer.BadParameter(there, param_hint="--out")
-    if robot is not None and out.suffix == _MCAP:
+    check_ending("--out", out, _MCAP, _BTLOG)
+    mcap = out.name.lower().endswith(_MCAP)
+    if robot is not None and mcap:
         raise typer.BadParameter("is for .btlog: an MCAP file holds all robots", param_hint="--robot")
     loaded = load_recording(recording)
     _spare(recording, out)
     make_folders({"--out": out})
-    if out.suffix == _MCAP:
+    if mcap:
         from robobt.match.recording.mcap import write_mcap
 
         say(f"MCAP file: {write_mcap(loaded, out)}")
@@ -78,6 +77,8 @@ def case(
     from robobt.match.recording import load_recording
     from robobt.match.regression_cases import save_regression_case
 
+    check_ending("--out", out, ".yaml", ".yml")
+    _spare_scenario(out)
     import_files(imports)
     loaded = load_recording(recording)
     who = recorded_robot(loaded, robot)
@@ -140,6 +141,7 @@ def demonstrations(
 
     if by not in TEACHERS:
         raise typer.BadParameter(f"must be {' or '.join(TEACHERS)}, not {by!r}", param_hint="--by")
+    check_ending("--out", out, ".parquet")
     given = {
         f"environment.{name}": value for name, value in parse_assignments(changes or [], "--set").items()
     }
@@ -177,6 +179,14 @@ def recorded_robot(recording: Recording, text: str | None) -> RobotId:
     if name not in recorded:
         raise typer.BadParameter(f"no tree was recorded of {text!r}; there are {there}", param_hint="--robot")
     return recorded[name]
+
+
+def _spare_scenario(target: Path) -> None:
+    """Refuse to replace a scenario or tree, whose names end as those of regression cases do."""
+    from robobt.config.yaml import read_yaml
+
+    if target.is_file() and {"robots", "play", "tree"} & {*read_yaml(target)}:
+        raise typer.BadParameter(f"'{target}' is no regression case, and would be lost", param_hint="--out")
 
 
 def _spare(recording: Path, target: Path) -> None:

@@ -132,7 +132,9 @@ def _kind_of(name: str) -> ThingKind:
     Raises:
         typer.BadParameter: nothing has it, or several things have.
     """
-    if (of_file := _kind_of_file(name)) is not None:
+    # The parameters of a play in a file stand behind its name.
+    file = name if ".py:" in name or Path(name).exists() else name.partition(":")[0]
+    if (of_file := _kind_of_file(file)) is not None:
         return of_file
     from robobt.config.resources import bundled_scenarios
     from robobt.models.file import ModelError
@@ -144,13 +146,12 @@ def _kind_of(name: str) -> ThingKind:
     found += [
         kind for kind, plural in _PLURALS.items() if kind is not ThingKind.TASK and registered(plural, name)
     ]
+    found += [ThingKind.TASK] if _is_task(name) else []
     try:
         find_model(name)
         found.append(ThingKind.MODEL)
     except ModelError:
         pass
-    if not found and _is_task(name):
-        found.append(ThingKind.TASK)
     if len(found) > 1:
         there = f"{name!r} is a {' and a '.join(found)}; choose with --kind"
         raise typer.BadParameter(there, param_hint="NAME")

@@ -55,6 +55,8 @@ def show_play(text: str, out: Path | None, examined: Examined, *, as_json: bool)
     play, params = parse_play(text, "NAME")
     root = _build(play, params)
     if out is not None:
+        if out.exists() and Path(play).exists() and out.samefile(play):
+            raise typer.BadParameter("is the tree itself; give another name", param_hint="--out")
         _write(root, Path(play).stem, out)
         if not as_json:
             say(f"Tree: {out}")
@@ -92,7 +94,7 @@ def _write(root: Behaviour, name: str, out: Path) -> None:
         ".yaml": partial(tree_yaml, root, name),
         ".xml": partial(tree_xml, root, name),
     }
-    write_atomically(out, writers[out.suffix]())
+    write_atomically(out, writers[out.suffix.lower()]())
 
 
 def _build(play: str, params: dict[str, object]) -> Behaviour:

@@ -89,3 +89,34 @@ def test_commands_make_folders_and_tell(arguments: list[str], tmp_path: Path) ->
     ended = CliRunner().invoke(cli.app, given, terminal_width=1000)
     assert f": made the folder {folder}" in "".join(ended.stderr.splitlines())
     assert folder.is_dir()
+
+
+CASE = ["record", "case", "{recording}", "--tick", "3", "--robot", "blue 1"]
+
+
+@pytest.mark.integration
+@pytest.mark.parametrize(
+    ("arguments", "kept"),
+    [
+        (
+            ["record", "case", "{recording}", "--tick", "3", "--robot", "blue 1", "--out", "{kept}"],
+            "my_code.py",
+        ),
+        (
+            ["record", "case", "{recording}", "--tick", "3", "--robot", "blue 1", "--out", "{kept}"],
+            "mine.yaml",
+        ),
+        (["record", "demonstrations", "go_to_ball", "--episodes", "1", "--out", "{kept}"], "my_code.py"),
+        (["record", "export", "{recording}", "--robot", "blue 1", "--out", "{kept}"], "my_code.py"),
+        (["serve", "duel", "--seconds", "0.1", "--log", "{kept}"], "notes.txt"),
+        (["show", "{kept}", "--kind", "play", "--out", "{kept}"], "tree.yaml"),
+    ],
+)
+def test_a_file_of_another_kind_is_not_replaced(arguments: list[str], kept: str, tmp_path: Path) -> None:
+    recording, file = tmp_path / "made.robobt.arrows", tmp_path / kept
+    record(recording)
+    file.write_text("play: mine\ntree: Stop\n" if file.suffix == ".yaml" else "keep = 'me'\n")
+    before = file.read_text()
+    given = [text.format(recording=recording, kept=file) for text in arguments]
+    assert CliRunner().invoke(cli.app, given).exit_code == 2
+    assert file.read_text() == before

@@ -69,8 +69,10 @@ def judge(
         Results by name: the policies', then those of "skill" and "script".
 
     Raises:
-        JudgingError: a policy takes another observation than the task has.
+        JudgingError: a policy takes another observation than the task has, or is called as a teacher is.
     """
+    if taken := [name for name in policies if name in TEACHERS]:
+        raise JudgingError(f"{taken[0]}: this name is that of the task's own {taken[0]}; write ./{taken[0]}")
     players: dict[str, Callable[[ArenaTask], Policy]] = {}
     for name, policy in policies.items():
         players[name] = lambda task, policy=policy: task.jointly(policy)  # type: ignore[misc]
