@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 
 import pytest
 
 from benchmarks.behaviour import ROOMS, behaviour
-from benchmarks.measurements import PAGES, Measurement, changed_rooms, read_page
+from benchmarks.measurements import PAGES, RECORD, Measurement, changed_rooms, read_page
 from robobt.config.errors import ConfigError
 
 ONE = Measurement("speed.md", "Arenas", "2026-11-24", "1b7a2d5", ("sim", "motion"))
@@ -97,3 +98,11 @@ def test_there_is_a_probe_for_every_room_that_decides() -> None:
 def test_no_room_by_another_name() -> None:
     with pytest.raises(KeyError):
         behaviour(["attic"])
+
+
+def test_what_was_recorded_names_every_room() -> None:
+    kept = json.loads(RECORD.read_text())
+    assert kept["processor"]
+    assert all(set(rooms) == set(ROOMS) for rooms in kept["commits"].values())
+    measured = {one.commit[:7] for path in PAGES.glob("*.md") for one in read_page(path)}
+    assert set(kept["commits"]) & measured
