@@ -189,7 +189,9 @@ class RunFolder:
 
     def _take_up(self, resume: bool) -> None:
         if not resume:
-            raise RunFolderError(f"{self.path}: holds a run already; resume it, or give another folder")
+            raise RunFolderError(
+                f"{self.path}: holds a run already; resume it (--resume), or give another folder (--out)"
+            )
         stored = read_settings(self.path)
         if stored != self.settings:
             field = _first_difference(stored.model_dump(), self.settings.model_dump())
