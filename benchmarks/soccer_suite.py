@@ -19,7 +19,7 @@ import numpy as np
 
 from robobt import load_policy
 from robobt.cli.common import parse_assignments
-from robobt.cli.scenario_options import parse_play
+from robobt.cli.option_groups.scenario import parse_play
 from robobt.learning.envs import run_starts
 from robobt.learning.envs.episodes import Episodes
 from robobt.learning.envs.soccer.settings import SoccerSettings

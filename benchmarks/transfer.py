@@ -18,7 +18,7 @@ from __future__ import annotations
 import argparse
 from collections.abc import Mapping
 
-from robobt.cli.scenario_options import with_teams
+from robobt.cli.option_groups.scenario import with_teams
 from robobt.match import MatchResult, load_scenario, run_trials_in
 from robobt.match.results.compare import Difference, compare_results
 from robobt.match.scenario.changes import changed

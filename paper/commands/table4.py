@@ -23,8 +23,8 @@ from robobt.cli.common import (
     table,
     world_of,
 )
+from robobt.cli.option_groups.page import Page
 from robobt.cli.outputs import make_folders
-from robobt.cli.page import Page
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

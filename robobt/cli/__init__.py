@@ -17,8 +17,8 @@ import typer
 from rich.markup import escape
 
 from robobt.cli.common import console, errors, one_line_errors
-from robobt.cli.groups import spread
 from robobt.cli.moved import what_became
+from robobt.cli.option_groups.spread import spread
 from robobt.cli.options import option
 from robobt.config.telling import tell_warnings
 from robobt.signals import leave_after_signal

@@ -29,9 +29,9 @@ from robobt.cli.common import (
     warn,
     world_of,
 )
+from robobt.cli.option_groups.scenario import Set, scenario_of, with_teams
 from robobt.cli.options import option
 from robobt.cli.outputs import make_folders
-from robobt.cli.scenario_options import Set, scenario_of, with_teams
 
 if TYPE_CHECKING:
     from robobt.match import MatchResult, Scenario

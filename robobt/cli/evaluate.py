@@ -20,8 +20,8 @@ from robobt.cli.common import (
     print_json,
     table,
 )
+from robobt.cli.option_groups.scenario import parse_play
 from robobt.cli.options import option
-from robobt.cli.scenario_options import parse_play
 
 if TYPE_CHECKING:
     from robobt.learning.training.evaluation import Evaluation

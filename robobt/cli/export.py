@@ -9,9 +9,9 @@ import typer
 from rich.markup import escape
 
 from robobt.cli.common import Json, errors, print_json, say
-from robobt.cli.models import model_data, print_held_out
 from robobt.cli.options import option
 from robobt.cli.outputs import make_folders
+from robobt.cli.shown.models import model_data, print_held_out
 
 if TYPE_CHECKING:
     from robobt.models.file import Format

@@ -13,9 +13,9 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from robobt.cli.common import MAX_SEED, Json, print_json, say, warn
+from robobt.cli.option_groups.page import Page
 from robobt.cli.options import option
 from robobt.cli.outputs import check_ending, make_folders
-from robobt.cli.page import Page
 from robobt.config.errors import unknown_name
 from robobt.signals import Terminated
 

@@ -49,14 +49,14 @@ def list_(
     if path and kind is not ListedKind.MODELS:
         raise typer.BadParameter("is for models", param_hint="--path")
     if kind is ListedKind.MODELS:
-        from robobt.cli.models import list_models
+        from robobt.cli.shown.models import list_models
 
         list_models(path or (), as_json=as_json)
     elif kind is ListedKind.SCENARIOS:
-        from robobt.cli.scenarios import list_scenarios
+        from robobt.cli.shown.scenarios import list_scenarios
 
         list_scenarios(as_json=as_json)
     else:
-        from robobt.cli.lists import list_registered
+        from robobt.cli.shown.lists import list_registered
 
         list_registered(kind.value, None, as_json=as_json)

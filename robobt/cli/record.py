@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import tempfile
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
@@ -21,12 +20,9 @@ from robobt.cli.common import (
 )
 from robobt.cli.options import option
 from robobt.cli.outputs import RECORDING, check_ending, make_folders
+from robobt.cli.recordings import recorded_robot, recording_file
 from robobt.cli.team_figures import team_figures
 from robobt.cli.train import Task
-
-if TYPE_CHECKING:
-    from robobt.match.recording import Recording
-    from robobt.world import RobotId
 
 _File = Annotated[Path, typer.Argument(help=f"A recording (*{RECORDING}).")]
 _Robot = Annotated[str | None, option("--robot", "; may be left out where only one was recorded")]
@@ -78,7 +74,7 @@ def case(
     from robobt.match.regression_cases import save_regression_case
 
     check_ending("--out", out, ".yaml", ".yml")
-    _spare_scenario(out)
+    _spare_others(out)
     import_files(imports)
     loaded = load_recording(recording)
     who = recorded_robot(loaded, robot)
@@ -104,13 +100,8 @@ def statistics(
     from robobt.match.recording import load_recording
     from robobt.match.recording.statistics import recorded_statistics
 
-    if recording.name.lower().endswith((".log", ".log.gz")):
-        from robobt.league.log.world import record_log
-
-        with tempfile.TemporaryDirectory() as folder:
-            loaded = load_recording(record_log(recording, Path(folder) / f"log{RECORDING}"))
-    else:
-        loaded = load_recording(recording)
+    with recording_file(recording) as file:
+        loaded = load_recording(file)
     teams = {name: asdict(team) for name, team in recorded_statistics(loaded).items()}
     if not teams:
         raise typer.BadParameter("holds no referee, so there is no match to count", param_hint="RECORDING")
@@ -167,25 +158,11 @@ def demonstrations(
     )
 
 
-def recorded_robot(recording: Recording, text: str | None) -> RobotId:
-    """Return the robot of that name, or the only one."""
-    recorded = {str(robot.id): robot.id for robot in recording.header.robots if robot.tree}
-    if text is None and len(recorded) == 1:
-        return next(iter(recorded.values()))
-    there = ", ".join(recorded) or "none"
-    if text is None:
-        raise typer.BadParameter(f"name a robot; trees were recorded of {there}", param_hint="--robot")
-    name = " ".join(text.split())
-    if name not in recorded:
-        raise typer.BadParameter(f"no tree was recorded of {text!r}; there are {there}", param_hint="--robot")
-    return recorded[name]
-
-
-def _spare_scenario(target: Path) -> None:
-    """Refuse to replace a scenario or tree, whose names end as those of regression cases do."""
+def _spare_others(target: Path) -> None:
+    """Refuse to replace what is no regression case: scenarios and trees end in .yaml too."""
     from robobt.config.yaml import read_yaml
 
-    if target.is_file() and {"robots", "play", "tree"} & {*read_yaml(target)}:
+    if target.is_file() and read_yaml(target).get("format") != "robobt-regression-case":
         raise typer.BadParameter(f"'{target}' is no regression case, and would be lost", param_hint="--out")
 
 

@@ -8,12 +8,14 @@ from typing import Annotated
 
 import typer
 
-from robobt.cli import show_play, show_recording
 from robobt.cli.common import Imports, Json, complete_play, import_files
-from robobt.cli.lists import REGISTERED, list_registered, registered
+from robobt.cli.option_groups.page import Page
 from robobt.cli.options import option
 from robobt.cli.outputs import RECORDING, make_folders
-from robobt.cli.page import Page
+from robobt.cli.recordings import LOGS
+from robobt.cli.shown.lists import REGISTERED, list_registered, registered
+from robobt.cli.shown.play import TREE_FORMATS, Examined, show_play
+from robobt.cli.shown.recording import RECORDING_FORMATS, Shown, show_recording
 
 
 class ThingKind(StrEnum):
@@ -36,10 +38,10 @@ _PLURALS = {
     ThingKind.TASK: "tasks",
 }
 _FORMATS = {
-    ThingKind.PLAY: show_play.TREE_FORMATS,
+    ThingKind.PLAY: TREE_FORMATS,
     ThingKind.SCENARIO: (".yaml",),
     ThingKind.MODEL: (".md",),
-    ThingKind.RECORDING: show_recording.RECORDING_FORMATS,
+    ThingKind.RECORDING: RECORDING_FORMATS,
 }
 
 
@@ -64,8 +66,8 @@ def show(
         ),
     ] = None,
     *,
-    examined: show_play.Examined,
-    shown: show_recording.Shown,
+    examined: Examined,
+    shown: Shown,
     page: Page,
     imports: Imports = None,
     as_json: Json = False,
@@ -89,15 +91,15 @@ def show(
     page.check(shown.live)
     make_folders({"--out": out})
     if what is ThingKind.RECORDING:
-        show_recording.show_recording(Path(name), out, shown, page)
+        show_recording(Path(name), out, shown, page)
     elif what is ThingKind.PLAY:
-        show_play.show_play(name, out, examined, as_json=as_json)
+        show_play(name, out, examined, as_json=as_json)
     elif what is ThingKind.SCENARIO:
-        from robobt.cli.scenarios import show_scenario
+        from robobt.cli.shown.scenarios import show_scenario
 
         show_scenario(name, out, as_json=as_json)
     elif what is ThingKind.MODEL:
-        from robobt.cli.models import show_model
+        from robobt.cli.shown.models import show_model
 
         show_model(name, out, as_json=as_json)
     else:
@@ -107,8 +109,8 @@ def show(
 def _check(
     what: ThingKind,
     out: Path | None,
-    examined: show_play.Examined,
-    shown: show_recording.Shown,
+    examined: Examined,
+    shown: Shown,
     *,
     as_json: bool,
 ) -> None:
@@ -165,7 +167,7 @@ def _kind_of(name: str) -> ThingKind:
 def _kind_of_file(name: str) -> ThingKind | None:
     """Return what a file holds, by the ending of its name; None for a name that is no file's."""
     lowered = name.lower()
-    if lowered.endswith((RECORDING, *show_recording.LOGS)):
+    if lowered.endswith((RECORDING, *LOGS)):
         return ThingKind.RECORDING
     if lowered.endswith((".pt", ".onnx")):
         return ThingKind.MODEL
@@ -192,7 +194,7 @@ def _is_task(name: str) -> bool:
 
 def _nothing(name: str) -> str:
     """Say that nothing has this name, with the reason where a package failed, or with names close to it."""
-    from robobt.cli.lists import names_of, problem_with
+    from robobt.cli.shown.lists import names_of, problem_with
     from robobt.config.errors import close_names
     from robobt.config.resources import bundled_scenarios
     from robobt.models.find import list_models, model_folders

@@ -23,9 +23,9 @@ from robobt.cli.common import (
     say,
     table,
 )
+from robobt.cli.option_groups.page import Page
 from robobt.cli.options import option
 from robobt.cli.outputs import make_folders
-from robobt.cli.page import Page
 
 if TYPE_CHECKING:
     from rich.live import Live

@@ -9,7 +9,7 @@ import pytest
 import typer
 from typer.testing import CliRunner
 
-from robobt.cli.groups import spread
+from robobt.cli.option_groups.spread import spread
 
 
 @dataclass(frozen=True)

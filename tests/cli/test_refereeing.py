@@ -9,7 +9,7 @@ import pytest
 from typer.testing import CliRunner, Result
 
 from robobt.cli import app
-from robobt.cli.refereeing import MatchExtent, Who, refereed
+from robobt.cli.option_groups.refereeing import MatchExtent, Who, refereed
 from robobt.league.referee.process import VARIABLE
 from robobt.match import load_scenario
 from tests.league.referee.conftest import program as program

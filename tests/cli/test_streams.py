@@ -10,8 +10,8 @@ from io import StringIO
 import pytest
 from rich.console import Console
 
-from robobt.cli import scenarios
 from robobt.cli.screen import drop_odd_sizes
+from robobt.cli.shown import scenarios
 from tests.waiting import LIMIT
 
 ROBOBT = [sys.executable, "-m", "robobt"]

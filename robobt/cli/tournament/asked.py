@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from robobt.cli.common import warn
+from robobt.cli.option_groups.scenario import parse_play
 from robobt.cli.options import option
-from robobt.cli.scenario_options import parse_play
 
 if TYPE_CHECKING:
     from robobt.tournament.entrants import Entrant

@@ -23,10 +23,10 @@ from robobt.cli.common import (
     table,
     warn,
 )
+from robobt.cli.option_groups.refereeing import Refereeing
+from robobt.cli.option_groups.scenario import Changes, parse_play
 from robobt.cli.options import option
 from robobt.cli.outputs import make_folders
-from robobt.cli.refereeing import Refereeing
-from robobt.cli.scenario_options import Changes, parse_play
 from robobt.cli.tournament.asked import (
     ALPHA,
     BETA,

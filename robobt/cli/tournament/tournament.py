@@ -23,10 +23,10 @@ from robobt.cli.common import (
     say,
     warn,
 )
+from robobt.cli.option_groups.refereeing import Refereeing
+from robobt.cli.option_groups.scenario import Changes
 from robobt.cli.options import option
 from robobt.cli.outputs import make_folders
-from robobt.cli.refereeing import Refereeing
-from robobt.cli.scenario_options import Changes
 from robobt.cli.tournament.asked import (
     ALPHA,
     BETA,

@@ -198,7 +198,7 @@ class Beside:
 
 def compare(seconds: float | None, seed: int, name: str = "six_v_six") -> Comparison:
     """Play under the official controller at the rules' times; all of it where ``seconds`` is None."""
-    from robobt.cli.refereeing import MatchExtent, Who, refereed
+    from robobt.cli.option_groups.refereeing import MatchExtent, Who, refereed
 
     scenario, _ = refereed(load_scenario(name), Who.OFFICIAL, Path(OFFICIAL), MatchExtent.FULL)
     if seconds is not None:

@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-import tempfile
-from collections.abc import Iterator
-from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
@@ -12,12 +9,10 @@ from typing import Annotated
 import typer
 
 from robobt.cli.common import say
+from robobt.cli.option_groups.page import Page
 from robobt.cli.options import option
 from robobt.cli.outputs import PAGE, RECORDING
-from robobt.cli.page import Page
-
-LOGS = (".log", ".log.gz")
-"""How the names of league logs end."""
+from robobt.cli.recordings import recording_file
 
 RECORDING_FORMATS = (PAGE, ".gif", ".png")
 """How the names of files end that a recording is written to."""
@@ -61,7 +56,7 @@ def show_recording(recording: Path, out: Path | None, shown: Shown, page: Page) 
         return
     from robobt.match.recording import load_recording
 
-    with _recording(recording) as file:
+    with recording_file(recording) as file:
         loaded = load_recording(file)
     if out is None:
         stem = recording.name.removesuffix(".gz").removesuffix(".log").removesuffix(RECORDING)
@@ -69,7 +64,7 @@ def show_recording(recording: Path, out: Path | None, shown: Shown, page: Page) 
     if out.exists() and out.samefile(recording):
         raise typer.BadParameter("is the recording itself; give another name", param_hint="--out")
     if out.suffix.lower() in (".gif", ".png"):
-        from robobt.cli.record import recorded_robot
+        from robobt.cli.recordings import recorded_robot
         from robobt.live.replay_picture import write_gif, write_png
 
         who = None if shown.robot is None else recorded_robot(loaded, shown.robot)
@@ -83,21 +78,9 @@ def show_recording(recording: Path, out: Path | None, shown: Shown, page: Page) 
     say(f"Page: {write_html(loaded, out)}")
 
 
-@contextmanager
-def _recording(file: Path) -> Iterator[Path]:
-    """Give the file itself, or a recording of what a league log holds."""
-    if not file.name.lower().endswith(LOGS):
-        yield file
-        return
-    from robobt.league.log.world import record_log
-
-    with tempfile.TemporaryDirectory() as folder:
-        yield record_log(file, Path(folder) / f"{file.name}{RECORDING}")
-
-
 def _show(recording: Path, start: float, page: Page) -> None:
     """Show a recording or a league log in the live page, until Ctrl-C."""
-    with _recording(recording) as file, page.server() as server:
+    with recording_file(recording) as file, page.server() as server:
         from robobt.live.replayed import RecordingPlayback
 
         RecordingPlayback(server, file, start).show()

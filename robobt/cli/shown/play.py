@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from robobt.cli.common import MAX_SEED, errors, print_json, say, warn
+from robobt.cli.option_groups.scenario import parse_play
 from robobt.cli.options import option
-from robobt.cli.scenario_options import parse_play
 
 if TYPE_CHECKING:
     from robobt.tree import Behaviour

@@ -1,0 +1,1 @@
+"""What ``robobt list`` and ``robobt show`` print and write, by the kind of thing."""
