@@ -130,3 +130,24 @@ def example(speed: float, limit: float) -> float:
 )
 def test_what_is_not_spoken_of_is_found(doc: str, left: list[str]) -> None:
     assert list(unsaid(example, doc, returns=True)) == left
+
+
+ENTRY = re.compile(r"[.;\]] ([a-z_]\w*(, [a-z_]\w*)+|[A-Z]\w*Error): ")
+"""An entry of a section that goes on behind another one, where readers and documentation do not find it."""
+
+
+def test_each_entry_of_a_section_has_a_line_of_its_own() -> None:
+    found = []
+    for one in exported().values():
+        for member in (one, *(vars(one).values() if inspect.isclass(one) else ())):
+            doc = inspect.getdoc(member) if callable(member) else None
+            sections = re.search(r"^(Args|Attributes|Raises):.*", doc or "", re.MULTILINE | re.DOTALL)
+            if sections and (run_on := ENTRY.search(sections[0])):
+                found.append((getattr(member, "__qualname__", ""), run_on[1]))
+    assert found == []
+
+
+def test_an_entry_behind_another_is_found() -> None:
+    assert ENTRY.search("    time: simulated duration [s]. blue_score, yellow_score: goals.")
+    assert ENTRY.search("    ModelError: it is damaged. OSError: it cannot be read.")
+    assert not ENTRY.search("    low, high: its interval; None: unknown.")

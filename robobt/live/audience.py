@@ -34,8 +34,8 @@ class Audience:
         steerer: the viewer who steers.
         inbox: that viewer's requests to the match, with their times of arrival (perf_counter) [s].
         refused: how many requests and messages were refused, by reason.
-        layers: drawing layers that viewers watch. stream, state: the stream shown to them, and the state of
-            the match.
+        layers: drawing layers that viewers watch.
+        stream, state: the stream shown to them, and the state of the match.
     """
 
     def __init__(self, changed: Callable[[], None]) -> None:

@@ -27,8 +27,8 @@ class Player:
 
     Skills share ``store`` and look things up in ``names`` first. ``problem`` is the last failure of the tree:
     the node's path and what happened. If a person drives the robot, ``driver`` decides instead of the tree,
-    ``driver`` says what to do in place of the tree, which rests. ``failing`` is why its tree failed at every
-    tick so far, the path of the node and its reason; None once it did anything else, or for another reason.
+    which rests. ``failing`` is the node and the one reason for which the tree failed at every tick so far; it
+    is None once the tree did anything else, or failed for another reason.
     """
 
     robot: RobotId

@@ -95,8 +95,9 @@ def run_trials_in(
     Raises:
         ScenarioError: the scenario does not fit the world, or its objects find no place.
         RunError: a trial raised or its worker died.
-        ResultsFileError: ``out`` holds results of another run or other data. OSError: a file cannot be
-        written. ValueError: an argument is out of range.
+        ResultsFileError: ``out`` holds results of another run or other data.
+        OSError: a file cannot be written.
+        ValueError: an argument is out of range.
     """
     trials = scenario.trials if trials is None else trials
     seed = scenario.seed if seed is None else seed

@@ -58,10 +58,10 @@ class TeamPlan:
         marks: which opponent each marker marks.
         next_pass: the pass that the attacker is about to play, None without one.
         next_pass_time: when that pass was last chosen [s].
-        meant: when and where each player was last the receiver of that pass [s, m]. own_times, their_times:
-        when each of the team's and of the opponents' robots can have the ball [s]. own_movers, their_movers:
-        all robots of either team, as :func:`robobt.world.records.movers` returns them; opponents with at most
-        the speed and acceleration that the settings assume.
+        meant: when and where each player was last the receiver of that pass [s, m].
+        own_times, their_times: when each of the team's and of the opponents' robots can have the ball [s].
+        own_movers, their_movers: all robots of either team, as :func:`robobt.world.records.movers` returns
+            them; opponents with at most the speed and acceleration that the settings assume.
         meetings: when and where each robot can meet the ball, from :func:`robobt.motion.arrival.meetings`.
         attacker_since: time at which the attacker became the attacker [s].
         ours: whether the ball counts as the own team's.

@@ -25,8 +25,8 @@ def find_task(name: str) -> type[ArenaTask]:
         name: name of the task; ``my_task.py:MyTask`` for a task in a Python file, by its class or its name.
 
     Raises:
-        KeyError: there is no such task; the message lists the known names. PythonFileError: the file cannot
-        be read, or raises as it runs.
+        KeyError: there is no such task; the message lists the known names.
+        PythonFileError: the file cannot be read, or raises as it runs.
     """
     file, _, inner = name.rpartition(":")
     if file.endswith(".py") or name.endswith(".py"):

@@ -21,7 +21,8 @@ class EpisodeProgress(Protocol):
             goalkeeper's mouth.
         kick_tick: tick in which the kicker first fired; -1 before.
         kick_rewarded: 1 once a kick has been rewarded, or while a rewarded shot is on its way; else 0.
-        total_reward: undiscounted sum of rewards. ball_x, ball_y: position of the ball before the tick [m].
+        total_reward: undiscounted sum of rewards.
+        ball_x, ball_y: position of the ball before the tick [m].
             carried_x, carried_y: where the ball came into the present mouth [m]; nan if it is in none.
         potential: potential of the state before the tick, for reward shaping; nan at first.
     """

@@ -34,7 +34,8 @@ class RestartState(Protocol):
     """An arena's restarts.
 
     Attributes:
-        team: the team of the restart: 1 blue, -1 yellow, 0 in play. spot_x, spot_y: place of the ball [m].
+        team: the team of the restart: 1 blue, -1 yellow, 0 in play.
+        spot_x, spot_y: place of the ball [m].
         taker: robot that took the last restart and may not touch the ball, -1 for none.
         left: ticks left to take the restart.
         pause: ticks for which an opponent too near does not count as a new fault.

@@ -66,7 +66,8 @@ class RefereeEvent:
         kind: kind of the event.
         team: the league's ``by_team``: the scorer of a goal, the offender of a foul; None if no team caused
             it.
-        robot: number of the robot, if known. x, y: place of the event, in world coordinates [m].
+        robot: number of the robot, if known.
+        x, y: place of the event, in world coordinates [m].
         details: the other fields of the league's message by name, such as ``crash_speed``; SI units and world
             coordinates (blue defends -x).
     """

@@ -17,8 +17,8 @@ class Difference:
 
     Attributes:
         n: number of distinct pairs of trials in which both have the figure.
-        mean: mean difference, this variant minus the first; None without such a trial.
-            interval; None if all trials, or all differences, are equal.
+        mean: mean difference, this variant minus the first; None without such a pair.
+        low, high: its interval; None if all trials, or all differences, are equal.
     """
 
     n: int
@@ -32,11 +32,12 @@ class AgainstFirst:
     """One variant compared with the first, paired by trial.
 
     Attributes:
-        scored: difference in the share of trials in which blue scores. only_this, only_first: number of
+        scored: difference in the share of trials in which blue scores.
         only_this, only_first: trials in which blue scores with this variant alone, and with the first alone.
         p: p value of McNemar's exact two-sided test; ``holm`` is corrected for the number of variants.
-        goals: goals of blue minus those of yellow, a trial.
-            time until blue's first robot has the ball, and until it has kicked [s].
+        goals: difference in blue's goals minus yellow's, per trial.
+        to_ball, to_kick: difference in the time until blue's first robot has the ball, and until it has
+            kicked [s].
     """
 
     scored: Difference

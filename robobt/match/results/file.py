@@ -62,8 +62,8 @@ class TrialsFile(Closing, Generic[R]):
         done: results that the file already held, by trial.
 
     Raises:
-        ResultsFileError: the file holds results of another run or other data. OSError: it cannot be read or
-        written.
+        ResultsFileError: the file holds results of another run or other data.
+        OSError: it cannot be read or written.
     """
 
     def __init__(

@@ -59,7 +59,8 @@ class MatchResult:
         trial: number of the trial, from 0.
         seed: seed of the trial.
         outcome: how the trial ended, one of :class:`robobt.match.ends.Outcome`.
-        time: simulated duration [s]. blue_score, yellow_score: goals.
+        time: simulated duration [s].
+        blue_score, yellow_score: goals.
         in_play: share of the time with the ball in play, 0 to 1.
         ticks: number of control periods.
         robots: figures of each robot by its name ("blue 0").

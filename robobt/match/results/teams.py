@@ -59,11 +59,11 @@ class TeamResult:
         expected_goals: sum of the shots' probabilities against a goalkeeper like the real ones, by the rater
             ``expected_goal``.
         possession: share of the time in play in which this team was the last to touch the ball.
-        distance: total distance that its robots drove [m]. fouls, yellow_cards, red_cards: as the referee
-        counts them. placements, placements_succeeded: ball placements that it was asked for, and those that
-        succeeded. restarts, restarts_kept: own kick-offs and free kicks after which the ball came into play,
-        taken or not; those after which the first robot other than the kicker to touch the ball was of this
-        team.
+        distance: total distance that its robots drove [m].
+        fouls, yellow_cards, red_cards: as the referee counts them.
+        placements, placements_succeeded: ball placements that it was asked for, and those that succeeded.
+        restarts, restarts_kept: own kick-offs and free kicks after which the ball came into play, taken or
+            not; those after which the first robot other than the kicker to touch the ball was of this team.
     """
 
     __pydantic_config__ = ConfigDict(extra="forbid", allow_inf_nan=False)

@@ -89,7 +89,7 @@ def search(
             what is known so far.
         on_wait: called when another program holds this one up, as by
             :func:`robobt.tournament.play.play_tournament`.
-        tell_outputs: as for :func:`robobt.tournament.play.play`.
+        tell_outputs: as for :func:`robobt.tournament.play.play_tournament`.
 
     Raises:
         SweepError: Optuna is not installed.

@@ -20,8 +20,8 @@ class NodeCounts:
     Attributes:
         path: path of the node.
         ticks: number of ticks.
-        transitions: number of ticks with another status than at the last tick. successes, failures: number of
-            ticks with this status.
+        transitions: number of ticks with another status than at the last tick.
+        successes, failures: number of ticks with this status.
         runs: number of ticks after which it was running.
         last: the status of its last tick, None before the first.
         own_time: total time from the end of the node ticked before it to its own end [s]: all the time of a

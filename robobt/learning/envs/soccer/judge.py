@@ -54,9 +54,10 @@ class Mind(Protocol):
     """The state of an episode.
 
     Attributes:
-        last: index of the last robot that held the ball, -1 for none. taken_x, taken_y: where the ball came
-        into that mouth [m]; ``taken_x`` is nan once it was released. left_x, left_y: where the ball was last
-        in that mouth [m]. blue_ticks, yellow_ticks: ticks in a row for which each team has held the ball.
+        last: index of the last robot that held the ball, -1 for none.
+        taken_x, taken_y: where the ball came into that mouth [m]; ``taken_x`` is nan once it was released.
+        left_x, left_y: where the ball was last in that mouth [m].
+        blue_ticks, yellow_ticks: ticks in a row for which each team has held the ball.
         goal: 1 for a goal by blue, -1 by yellow, 0 for none.
     """
 
