@@ -13,7 +13,7 @@ from robobt.cli.common import MAX_SEED, Json, console, errors, print_json, say, 
 from robobt.league.estimate.filter import VisionFilter
 from robobt.league.serve.cameras import Cameras
 from robobt.sim import SimSettings, SimWorld, settings_from
-from robobt.sim.settings import RealismSettings
+from robobt.sim.realism import RealismSettings
 from robobt.world.ball_model import GRAVITY
 from robobt.world.command import CHIP_ANGLE, RobotCommand
 from robobt.world.field import DIVISION_B

@@ -18,7 +18,7 @@ from robobt.match import load_scenario
 from robobt.match.loop import MatchLoop
 from robobt.match.scenario.scenario import Scenario
 from robobt.sim import SimSettings, SimWorld, settings_from
-from robobt.sim.settings import RealismSettings, realism_level
+from robobt.sim.realism import RealismSettings, realism_level
 from robobt.world.command import RobotCommand
 from robobt.world.field import DIVISION_B
 from robobt.world.game import Team
@@ -46,7 +46,11 @@ Rms = dict[str, dict[str, float]]
 
 
 def bench_filter(
-    scenario: Scenario, seconds: float = 60.0, seed: int = 0, realism: str = "realistic", cameras: int = 1
+    scenario: Scenario,
+    seconds: float = 60.0,
+    seed: int = 0,
+    realism: str | RealismSettings = "realistic",
+    cameras: int = 1,
 ) -> dict[str, Rms]:
     """Measure root mean square errors of the filter's frames, in SI units and in the plane.
 
@@ -60,10 +64,10 @@ def bench_filter(
         scenario: what is played in the match.
         seconds: simulated time of each situation [s].
         seed: of noise and match.
-        realism: a level of :data:`robobt.sim.settings.REALISM`.
+        realism: a level, or the name of one of :data:`robobt.sim.REALISM`.
         cameras: how many.
     """
-    level = realism_level(realism)
+    level = realism_level(realism) if isinstance(realism, str) else realism
     if not seconds > 2 * _WARM_UP:
         raise ValueError(f"the filter is measured for more than {2 * _WARM_UP} s, not {seconds}")
     # The cameras alone are late and noisy; the world itself only loses and delays commands.

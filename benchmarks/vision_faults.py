@@ -32,7 +32,8 @@ from robobt.league.sources import VisionSources
 from robobt.league.wire.notices import Notices
 from robobt.league.wire.senders import Address
 from robobt.league.wire.vision import BallDetection, CameraFrame, RobotDetection
-from robobt.sim.settings import REALISM, SimSettings
+from robobt.sim.realism import REALISM
+from robobt.sim.settings import SimSettings
 from robobt.world.command import RobotCommand
 from robobt.world.field import DIVISION_B
 from robobt.world.game import Team

@@ -148,7 +148,8 @@ def table4(
     from paper.table4_picture import draw_table4
     from paper.table4_starts import LIMITS
     from robobt.engines.run import engine
-    from robobt.sim.settings import PRESETS, REALISM
+    from robobt.sim.realism import REALISM
+    from robobt.sim.settings import PRESETS
 
     one_of([setting.preset], PRESETS, "--preset")
     one_of([] if setting.realism is None else [setting.realism], REALISM, "--realism")

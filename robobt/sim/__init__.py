@@ -4,8 +4,8 @@ from typing import TYPE_CHECKING
 
 from robobt.config.lazy import lazily
 from robobt.sim.arenas import Arenas as Arenas
+from robobt.sim.realism import REALISM as REALISM
 from robobt.sim.settings import PRESETS as PRESETS
-from robobt.sim.settings import REALISM as REALISM
 from robobt.sim.settings import SimSettings as SimSettings
 from robobt.sim.settings import preset as preset
 from robobt.sim.settings import settings_from as settings_from

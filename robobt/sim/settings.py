@@ -14,6 +14,7 @@ from pydantic import Field
 
 from robobt.config.errors import unknown_name
 from robobt.config.validation import Settings
+from robobt.sim.realism import RealismSettings, realism_level
 from robobt.sim.robot_settings import (
     BodySettings,
     DribblerSettings,
@@ -53,47 +54,6 @@ class ContactSettings(Settings):
     goal_back_restitution: float = Field(0.1, ge=0, le=1)
     robot_restitution: float = Field(0.3, ge=0, le=1)
     robot_friction: float = Field(0.2, ge=0, le=5)
-
-
-class RealismSettings(Settings):
-    """Noise, losses and delays between the world and the trees."""
-
-    ball_noise: float = Field(0.0, ge=0, le=1, description="standard deviation of the ball's position [m]")
-    robot_noise: float = Field(0.0, ge=0, le=1, description="standard deviation of a robot's position [m]")
-    heading_noise: float = Field(0.0, ge=0, le=3, description="standard deviation of a robot's heading [rad]")
-    missing_ball: float = Field(0.0, ge=0, le=1, description="chance a tick that the ball is not seen")
-    missing_robot: float = Field(0.0, ge=0, le=1, description="chance a tick and robot that it is not seen")
-    command_loss: float = Field(
-        0.0, ge=0, le=1, description="chance that a command is lost; the last one stands"
-    )
-    vision_delay: float = Field(0.0, ge=0, le=0.5, description="age of what is observed [s]")
-    command_delay: float = Field(0.0, ge=0, le=0.5, description="command to effect [s]")
-
-
-REALISM: dict[str, RealismSettings] = {
-    "none": RealismSettings(),
-    "friendly": RealismSettings(
-        ball_noise=0.0004,
-        robot_noise=0.0003,
-        heading_noise=0.003,
-        missing_ball=0.01,
-        missing_robot=0.01,
-        command_loss=0.01,
-        vision_delay=0.035,
-    ),
-    "rc2021": RealismSettings(ball_noise=0.001, robot_noise=0.0013, heading_noise=0.01, vision_delay=0.035),
-    "realistic": RealismSettings(
-        ball_noise=0.0014,
-        robot_noise=0.0013,
-        heading_noise=0.01,
-        missing_ball=0.05,
-        missing_robot=0.02,
-        command_loss=0.03,
-        vision_delay=0.035,
-        command_delay=0.003,
-    ),
-}
-"""Realism levels. Source: ER-Force's simulator-realism configurations."""
 
 
 class SimSettings(Settings):
@@ -265,17 +225,6 @@ def preset(name: str, **changes: object) -> SimSettings:
     if name not in PRESETS:
         raise KeyError(f"no simulator preset is called {name!r}; {unknown_name(name, sorted(PRESETS))}")
     return PRESETS[name].model_copy(update=changes)
-
-
-def realism_level(name: str) -> RealismSettings:
-    """Return a realism level by name.
-
-    Raises:
-        KeyError: no such level; the message lists those there are.
-    """
-    if name not in REALISM:
-        raise KeyError(f"no realism level is called {name!r}; {unknown_name(name, REALISM)}")
-    return REALISM[name]
 
 
 def settings_from(simulator: str | Mapping[str, object]) -> SimSettings:

@@ -10,6 +10,7 @@ import numpy as np
 from robobt.sim.arenas import Arenas
 from robobt.sim.records import COMMAND, size
 from robobt.sim.settings import SimSettings
+from robobt.sim.sight import Sight
 from robobt.world.command import KickTrigger, RobotCommand
 from robobt.world.field import FieldGeometry
 from robobt.world.game import Team
@@ -54,6 +55,8 @@ class SimWorld(World):
         self._delayed = realism.vision_delay > 0.0
         self._noisy = any((realism.ball_noise, realism.robot_noise, realism.heading_noise))
         self._lossy = any((realism.missing_ball, realism.missing_robot))
+        systematic = any((realism.object_offset, realism.camera_error, realism.hidden_below))
+        self._sight = Sight(field, realism, self.settings.body.face) if systematic else None
         self._arenas = self._make_arenas()
         self._commands = np.zeros((1, len(self._ids), size(COMMAND)))
         self._rng = np.random.default_rng(0)
@@ -63,6 +66,7 @@ class SimWorld(World):
         # Robots' rows and the ball's, newest last; long enough to look back by the vision's delay.
         self._past: deque[FloatArray] = deque(maxlen=round(realism.vision_delay / self._arenas.dt) + 1)
         self._seen: FloatArray | None = None
+        self._felt: list[bool] | None = None
         self._report: FloatArray = self._rows()
 
     @property
@@ -87,6 +91,7 @@ class SimWorld(World):
         self.kicks = []
         self._taken.clear()
         self._seen = None
+        self._felt = None
         self._past.clear()
         self._past.append(self._rows())
         self._report = self._perceive()
@@ -94,19 +99,25 @@ class SimWorld(World):
     @property
     def shows_truth(self) -> bool:
         """Whether :meth:`observe` always returns what :meth:`truth` does."""
-        return not (self._delayed or self._noisy or self._lossy)
+        return not (self._reports or self.settings.realism.response_loss > 0.0)
+
+    @property
+    def _reports(self) -> bool:
+        """Whether the cameras' report is anything but the truth."""
+        return self._delayed or self._noisy or self._lossy or self._sight is not None
 
     def observe(self) -> Frame:
-        """Return what the cameras report: late, noisy and with gaps, as the settings define.
+        """Return what the cameras report: late, shifted, noisy and with gaps, as the settings define.
 
-        Velocities carry no noise of their own; a missing detection repeats the last one.
+        Velocities carry no noise of their own; a missing detection repeats the last one. Four cameras hang
+        over the field, and each thing is reported by the nearest one that sees it.
         """
         if self.shows_truth:
             return self.truth()
         rows = self._report
         robots = rows.tolist()
         x, y, z, vx, vy, vz = robots.pop()
-        return self._frame(robots, [x, y, vx, vy, z, vz])
+        return self._frame(robots, [x, y, vx, vy, z, vz], self._felt)
 
     def truth(self) -> Frame:
         """Return the simulated state itself."""
@@ -143,8 +154,10 @@ class SimWorld(World):
         if self._delayed:
             for rows in self._arenas.history[:, 0]:
                 self._past.append(rows.copy())
-        if self._delayed or self._noisy or self._lossy:
+        if self._reports:
             self._report = self._perceive()
+        if self.settings.realism.response_loss > 0.0:
+            self._felt = self._responses()
 
     def seen_kicks(self) -> list[tuple[RobotId, float]] | None:
         """See :meth:`robobt.world.World.seen_kicks`; a kick ticks after its command is reported."""
@@ -207,21 +220,32 @@ class SimWorld(World):
         rows = self._past[0].copy() if self._delayed else self._rows()
         robots = len(self._ids)
         rows[:robots, 2] = wrap_angles(rows[:robots, 2])
+        hidden = self._sight is not None and not self._sight.look(rows)
         if self._noisy:
             rows[:robots, :2] += rng.normal(0.0, realism.robot_noise, (robots, 2))
             rows[:robots, 2] = wrap_angles(rows[:robots, 2] + rng.normal(0.0, realism.heading_noise, robots))
             rows[robots, :2] += rng.normal(0.0, realism.ball_noise, 2)
-        if self._lossy:
-            chance = np.full(robots + 1, realism.missing_robot)
-            chance[robots] = realism.missing_ball
-            gone = rng.random(robots + 1) < chance
+        if self._lossy or self._sight is not None:
+            gone = np.zeros(robots + 1, dtype=np.bool_)
+            if self._lossy:
+                chance = np.full(robots + 1, realism.missing_robot)
+                chance[robots] = realism.missing_ball
+                gone = rng.random(robots + 1) < chance
+            gone[robots] |= hidden
             if self._seen is not None:
                 rows[gone] = self._seen[gone]
             self._seen = rows
         return rows
 
-    def _frame(self, robots: list[list[float]], ball: list[float]) -> Frame:
-        contact = self._arenas.contact[0].tolist()
+    def _responses(self) -> list[bool]:
+        """Return which robots have reported the ball at their dribbler; a lost report leaves the last."""
+        told: list[bool] = self._arenas.contact[0].tolist()
+        last = self._felt or [False] * len(told)
+        lost = self._rng.random(len(told)) < self.settings.realism.response_loss
+        return [before if gone else now for now, before, gone in zip(told, last, lost, strict=True)]
+
+    def _frame(self, robots: list[list[float]], ball: list[float], felt: list[bool] | None = None) -> Frame:
+        contact = felt or self._arenas.contact[0].tolist()
         blue = len(self._blue)
         touch = int(self._arenas.touch[0])
         own = robot_states(self._blue, robots[:blue], contact[:blue])

@@ -36,7 +36,7 @@ from robobt.league.wire.simulation import write_teleport
 from robobt.league.wire.tracker import write_tracked
 from robobt.league.wire.vision import write_vision
 from robobt.league.world import LeagueWorld
-from robobt.sim.settings import REALISM
+from robobt.sim.realism import REALISM
 from robobt.world.command import RobotCommand
 from robobt.world.field import DIVISION_B
 from robobt.world.game import GameState, RefereeCommand, Restart, Team

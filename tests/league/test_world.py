@@ -19,7 +19,8 @@ from robobt.league.wire.sockets import Sender
 from robobt.league.world import LeagueWorld
 from robobt.match import load_scenario, run_trials_in
 from robobt.match.referee.events import EventKind, RefereeEvent
-from robobt.sim.settings import REALISM, SimSettings, preset
+from robobt.sim.realism import REALISM
+from robobt.sim.settings import SimSettings, preset
 from robobt.world import World
 from robobt.world.command import KickTrigger, RobotCommand
 from robobt.world.field import DIVISION_A, DIVISION_B

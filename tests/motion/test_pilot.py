@@ -21,7 +21,7 @@ from robobt.motion.pilot import (
     turn_rate,
 )
 from robobt.sim import preset
-from robobt.sim.settings import RealismSettings
+from robobt.sim.realism import RealismSettings
 from robobt.skills import GoToPose
 from robobt.testing import Trial, alone, blue, eventually, robot
 from robobt.world import RobotCommand, RobotLimits, RobotState

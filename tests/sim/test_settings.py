@@ -13,6 +13,39 @@ def test_the_named_presets_are_there() -> None:
     assert set(REALISM) == {"none", "friendly", "rc2021", "realistic"}
 
 
+@pytest.mark.parametrize(
+    ("level", "figures"),
+    [
+        # stddev_ball_p, stddev_robot_p, stddev_robot_phi, object_position_offset, camera_position_error,
+        # dribbler_ball_detections, missing_ball_detections, missing_robot_detections, robot_command_loss,
+        # robot_response_loss, as ER-Force's configurations have them.
+        ("friendly", (0.0004, 0.0003, 0.003, 0.02, 0.05, 0.001, 0.05, 0.02, 0.01, 0.01)),
+        ("rc2021", (0.0010, 0.0013, 0.01, 0.0, 0.0, 0.02, 0.05, 0.0, 0.03, 0.1)),
+        ("realistic", (0.0014, 0.0013, 0.01, 0.02, 0.1, 0.05, 0.05, 0.02, 0.03, 0.1)),
+    ],
+)
+def test_the_levels_are_er_forces(level: str, figures: tuple[float, ...]) -> None:
+    it = REALISM[level]
+    assert figures == (
+        it.ball_noise,
+        it.robot_noise,
+        it.heading_noise,
+        it.object_offset,
+        it.camera_error,
+        it.false_balls,
+        it.missing_ball,
+        it.missing_robot,
+        it.command_loss,
+        it.response_loss,
+    )
+    assert (it.hidden_below, it.camera_overlap, it.vision_delay, it.processing_time) == (
+        0.4,
+        1.0,
+        0.035,
+        0.01,
+    )
+
+
 def test_a_name_is_a_preset() -> None:
     assert settings_from("grsim") == preset("grsim")
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from robobt.sim import PRESETS, REALISM, SimWorld, preset
-from robobt.sim.settings import RealismSettings
+from robobt.sim.realism import RealismSettings
 from robobt.world import BALL_RADIUS, DIVISION_B, Placement, RobotCommand, RobotId, Team, World
 from robobt.world.command import CHIP_ANGLE
 from tests.sim.rig import IT, ME, holding, one_robot
@@ -79,6 +79,7 @@ def test_vision_is_late_by_its_delay() -> None:
             "missing_ball": 0,
             "missing_robot": 0,
             "command_loss": 0,
+            "object_offset": 0,
         }
     )
     world = SimWorld(DIVISION_B, {ME: None}, preset("default", realism=quiet), 0.005)

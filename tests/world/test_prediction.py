@@ -8,7 +8,7 @@ from dataclasses import replace
 import pytest
 
 from robobt.sim import SimWorld, preset
-from robobt.sim.settings import RealismSettings
+from robobt.sim.realism import RealismSettings
 from robobt.world.command import CHIP_ANGLE, RobotCommand
 from robobt.world.field import DIVISION_B
 from robobt.world.game import Team

@@ -25,7 +25,7 @@ from robobt.league.wire.simulation import read_control
 from robobt.league.wire.tracker import write_tracked
 from robobt.league.wire.vision import CameraFrame, write_vision
 from robobt.match.scenario.scenario import Scenario
-from robobt.sim.settings import REALISM
+from robobt.sim.realism import REALISM
 from robobt.world.command import RobotCommand
 from robobt.world.game import GameState, RefereeCommand, Team
 from robobt.world.protocol import Placement, World, WrappedWorld

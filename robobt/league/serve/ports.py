@@ -24,7 +24,7 @@ from robobt.league.wire.messages import (
 from robobt.league.wire.packets import read
 from robobt.league.wire.simulation import TEAMS, read_control, read_teleports
 from robobt.league.wire.sockets import LOOPBACK_ADDRESS, Packet, Receiver
-from robobt.sim.settings import RealismSettings
+from robobt.sim.realism import RealismSettings
 from robobt.world.game import Team
 from robobt.world.limits import RobotLimits
 from robobt.world.state import RobotId
@@ -39,8 +39,12 @@ _REALISM = {
     "stddev_ball_p": "ball_noise",
     "stddev_robot_p": "robot_noise",
     "stddev_robot_phi": "heading_noise",
+    "camera_position_error": "camera_error",
+    "camera_overlap": "camera_overlap",
+    "dribbler_ball_detections": "false_balls",
     "missing_ball_detections": "missing_ball",
     "robot_command_loss": "command_loss",
+    "robot_response_loss": "response_loss",
 }
 """Settings of realism by ER-Force's names."""
 
@@ -100,7 +104,7 @@ class ClientPorts:
             receiver.close()
 
     def set_realism(self, realism: RealismSettings) -> None:
-        """Replace the noise, gaps and latency of the vision, and the loss of commands."""
+        """Replace what the vision does, and the loss of commands and responses."""
         self._cameras.realism = realism
         self._field.command_loss = realism.command_loss
 
@@ -111,7 +115,7 @@ class ClientPorts:
         changed: dict[Team, Robots_Status] = {}
         for robot, state in self._field.truth().robots().items():
             now = (state.ball_contact, robot in kicked)
-            if robot.team in self._status_to and self._status.get(robot) != now:
+            if robot.team in self._status_to and self._status.get(robot) != now and self._responds():
                 self._status[robot] = now
                 changed.setdefault(robot.team, Robots_Status()).robots_status.add(
                     robot_id=robot.number,
@@ -141,7 +145,8 @@ class ClientPorts:
         response = RobotControlResponse()
         for robot, command in request.commands.items():
             if self._field.command(robot, command):
-                response.feedback.add(id=robot.number, dribbler_ball_contact=robots[robot].ball_contact)
+                if self._responds():
+                    response.feedback.add(id=robot.number, dribbler_ball_contact=robots[robot].ball_contact)
             else:
                 request.errors.append(("NO_ROBOT", f"there is no robot {robot} on the field"))
         _add(response, request.errors)
@@ -171,6 +176,11 @@ class ClientPorts:
         response = SimulatorResponse()
         _add(response, errors)
         return response
+
+    def _responds(self) -> bool:
+        """Return whether a robot's response gets through."""
+        loss = self._cameras.realism.response_loss
+        return not (loss > 0.0 and self._field.draw() < loss)
 
     def _on_control(self, team: Team, receiver: Receiver, packet: Packet) -> None:
         _answer(receiver, packet, self.control(team, packet.data))
@@ -239,6 +249,11 @@ def _realism(message: RealismConfigErForce, base: RealismSettings) -> RealismSet
     """Return the level with what the message sets replaced."""
     set_fields = [(theirs, ours) for theirs, ours in _REALISM.items() if message.HasField(theirs)]
     changes = {ours: getattr(message, theirs) for theirs, ours in set_fields}
-    if message.HasField("vision_delay"):
-        changes["vision_delay"] = message.vision_delay / 1e9
+    for theirs, ours in (("vision_delay", "vision_delay"), ("vision_processing_time", "processing_time")):
+        if message.HasField(theirs):
+            changes[ours] = getattr(message, theirs) / 1e9
+    if message.HasField("ball_visibility_threshold"):
+        changes["hidden_below"] = message.ball_visibility_threshold
+    if message.HasField("enable_invisible_ball") and not message.enable_invisible_ball:
+        changes["hidden_below"] = 0.0
     return RealismSettings.model_validate({**base.model_dump(), **changes})

@@ -17,7 +17,7 @@ from robobt.league.wire.tracker import write_tracked
 from robobt.league.wire.vision import write_vision
 from robobt.match.loop import WorldFactory
 from robobt.match.scenario.scenario import Scenario
-from robobt.sim.settings import REALISM
+from robobt.sim.realism import REALISM
 from robobt.world.command import RobotCommand
 from robobt.world.game import Team
 from robobt.world.protocol import Placement, World, WrappedWorld

@@ -111,6 +111,10 @@ class ServedField:
         self._last_command[i] = self.time
         return True
 
+    def draw(self) -> float:
+        """Return a number from 0 to 1 of the field's own generator, as the loss of commands draws them."""
+        return float(self._rng.random())
+
     def limit(self, robot: RobotId, limits: RobotLimits) -> bool:
         """Set the limits of a robot's commands; return False for an impossible number."""
         i = self._index.get(robot)

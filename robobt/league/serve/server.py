@@ -82,7 +82,8 @@ class SimServer(Closing):
         self._epoch, self._log = epoch, log
         self._stamped_from = epoch if clock == "unix" else 0.0
         rng = np.random.default_rng(seed)
-        self._cameras = Cameras(field.field, field.settings.realism, cameras, rng)
+        settings = field.settings
+        self._cameras = Cameras(field.field, settings.realism, cameras, rng, field.period, settings.body.face)
         self._uuid = str(UUID(bytes=rng.bytes(16), version=4))
         to = endpoints or Endpoints()
         with ExitStack() as opened:
@@ -163,13 +164,17 @@ class SimServer(Closing):
         field.step()
         self.frames += 1
         now, stamped = field.time, self._stamped_from + field.time
-        delay = self._cameras.realism.vision_delay
+        realism = self._cameras.realism
+        delay, admitted = realism.vision_delay, realism.processing_time
         sent = now + delay
         truth = field.truth()
-        frames = self._cameras.capture(truth, stamped, stamped + delay)
+        captured = stamped if admitted is None else stamped + delay - admitted
+        frames = self._cameras.capture(truth, captured, stamped + delay)
         geometry = None
         if self.frames % GEOMETRY_INTERVAL == 1:
-            geometry = write_geometry(field.field, self._cameras.places, field.settings.ball)
+            geometry = write_geometry(
+                field.field, list(self._cameras.calibrated.values()), field.settings.ball
+            )
         for frame in frames:
             self._post(sent, self._vision, write_vision(frame, geometry))
             geometry = None

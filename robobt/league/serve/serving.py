@@ -6,7 +6,8 @@ import numpy as np
 
 from robobt.league.serve.served_field import ServedField, line_up
 from robobt.match.scenario.scenario import Scenario
-from robobt.sim.settings import SimSettings, preset, realism_level, settings_from
+from robobt.sim.realism import realism_level
+from robobt.sim.settings import SimSettings, preset, settings_from
 from robobt.world.field import FieldGeometry
 
 

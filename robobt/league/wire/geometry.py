@@ -19,6 +19,7 @@ from robobt.league.wire.messages import (
 )
 from robobt.league.wire.packets import MM_PER_M, on_field
 from robobt.sim.settings import BallSettings
+from robobt.sim.sight import CAMERA_HEIGHT
 from robobt.world.field import DIVISION_A, DIVISION_B, FieldGeometry
 from robobt.world.geometry import Point
 from robobt.world.presence import GOAL_SUBSTITUTION_WIDTH
@@ -29,9 +30,6 @@ _LINE_THICKNESS = 0.01
 
 _GOAL_HEIGHT = 0.16
 """Height of the goals [m]. Source: RoboCup SSL rules."""
-
-CAMERA_HEIGHT = 4.0
-"""Height of the cameras above the ground [m]. Source: grSim's."""
 
 _CEILING = (1.0, 50.0)
 """Least and greatest height at which a camera can be [m]."""
@@ -45,7 +43,7 @@ class CameraPlace(NamedTuple):
 
     x: float
     y: float
-    z: float
+    z: float = CAMERA_HEIGHT
 
 
 def read_cameras(message: SSL_GeometryData) -> dict[int, CameraPlace]:
@@ -134,7 +132,7 @@ def read_field(message: SSL_GeometryFieldSize) -> FieldGeometry | None:
 
 
 def write_geometry(
-    field: FieldGeometry, cameras: Sequence[Point] = (), ball: BallSettings | None = None
+    field: FieldGeometry, cameras: Sequence[Point | CameraPlace] = (), ball: BallSettings | None = None
 ) -> SSL_GeometryData:
     """Return the geometry message of a field.
 
@@ -142,8 +140,8 @@ def write_geometry(
     """
     message = SSL_GeometryData()
     _write_size(message.field, field)
-    for number, (x, y) in enumerate(cameras):
-        _write_camera(message, number, x, y)
+    for number, place in enumerate(cameras):
+        _write_camera(message, number, CameraPlace(*place))
     if ball is not None:
         straight = message.models.straight_two_phase
         straight.acc_slide, straight.acc_roll = -ball.slide_deceleration, -ball.roll_deceleration
@@ -191,7 +189,7 @@ def _write_size(size: SSL_GeometryFieldSize, field: FieldGeometry) -> None:
     )
 
 
-def _write_camera(message: SSL_GeometryData, number: int, x: float, y: float) -> None:
+def _write_camera(message: SSL_GeometryData, number: int, place: CameraPlace) -> None:
     """Add a camera that looks straight down, its picture's x axis along the field's."""
     message.calib.add(
         camera_id=number,
@@ -204,12 +202,12 @@ def _write_camera(message: SSL_GeometryData, number: int, x: float, y: float) ->
         q1=0.0,
         q2=0.0,
         q3=0.0,
-        tx=-x * MM_PER_M,
-        ty=y * MM_PER_M,
-        tz=CAMERA_HEIGHT * MM_PER_M,
-        derived_camera_world_tx=x * MM_PER_M,
-        derived_camera_world_ty=y * MM_PER_M,
-        derived_camera_world_tz=CAMERA_HEIGHT * MM_PER_M,
+        tx=-place.x * MM_PER_M,
+        ty=place.y * MM_PER_M,
+        tz=place.z * MM_PER_M,
+        derived_camera_world_tx=place.x * MM_PER_M,
+        derived_camera_world_ty=place.y * MM_PER_M,
+        derived_camera_world_tz=place.z * MM_PER_M,
         pixel_image_width=_IMAGE[0],
         pixel_image_height=_IMAGE[1],
     )

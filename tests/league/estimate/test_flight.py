@@ -17,7 +17,7 @@ from robobt.league.serve.cameras import Cameras
 from robobt.league.wire.geometry import CameraPlace
 from robobt.league.wire.vision import BallDetection, CameraFrame
 from robobt.sim import SimWorld, preset, settings_from
-from robobt.sim.settings import REALISM
+from robobt.sim.realism import REALISM
 from robobt.world.command import CHIP_ANGLE, RobotCommand
 from robobt.world.field import DIVISION_B
 from robobt.world.game import Team

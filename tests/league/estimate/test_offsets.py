@@ -13,7 +13,8 @@ from hypothesis import strategies as st
 from robobt.league.estimate.filter import VisionFilter
 from robobt.league.estimate.offsets import MeanOffsets
 from robobt.league.wire.vision import BallDetection, CameraFrame, RobotDetection
-from robobt.sim.settings import REALISM, SimSettings
+from robobt.sim.realism import REALISM
+from robobt.sim.settings import SimSettings
 from robobt.world.field import DIVISION_B
 from robobt.world.game import Team
 from robobt.world.geometry import wrap_angle

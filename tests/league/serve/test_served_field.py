@@ -9,7 +9,8 @@ import pytest
 from robobt.league.serve.served_field import COMMAND_TIMEOUT, ServedField, line_up
 from robobt.league.wire.commands import BallTeleport, Teleport
 from robobt.league.wire.geometry import CAMERA_HEIGHT
-from robobt.sim.settings import REALISM, SimSettings
+from robobt.sim.realism import REALISM
+from robobt.sim.settings import SimSettings
 from robobt.world.command import CHIP_ANGLE, RobotCommand
 from robobt.world.field import DIVISION_A, DIVISION_B, FieldGeometry
 from robobt.world.game import Team

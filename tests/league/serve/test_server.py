@@ -30,7 +30,8 @@ from robobt.league.wire.sockets import Receiver, Sender
 from robobt.league.wire.tracker import read_tracked
 from robobt.league.wire.vision import read_vision
 from robobt.match.referee.settings import RefereeSettings
-from robobt.sim.settings import REALISM, SimSettings
+from robobt.sim.realism import REALISM
+from robobt.sim.settings import SimSettings
 from robobt.world.command import RobotCommand
 from robobt.world.field import DIVISION_B
 from robobt.world.game import Team
@@ -134,7 +135,8 @@ def test_the_visions_delay_keeps_frames_back() -> None:
         seen = read_vision(soon(lambda: list(vision.receive()))[0].data, PacketCounts())
     assert seen is not None
     assert seen.frame is not None
-    assert seen.frame.sent - seen.frame.captured == pytest.approx(0.035)
+    # The timestamps admit to the processing time only.
+    assert seen.frame.sent - seen.frame.captured == pytest.approx(0.01)
 
 
 def test_control_is_answered_with_who_has_the_ball(server: SimServer) -> None:
@@ -230,6 +232,33 @@ def test_limits_and_realism_can_be_configured(server: SimServer, endpoints: Endp
             assert seen is not None
             assert seen.frame is not None
             assert seen.frame.balls == []
+
+
+def test_a_message_sets_all_of_er_forces_realism(server: SimServer) -> None:
+    command = SimulatorCommand()
+    message = RealismConfigErForce(
+        ball_visibility_threshold=0.3,
+        camera_overlap=1.5,
+        camera_position_error=0.2,
+        dribbler_ball_detections=0.5,
+        robot_response_loss=1.0,
+        vision_delay=40_000_000,
+        vision_processing_time=10_000_000,
+    )
+    command.config.realism_config.custom.add().Pack(message)
+    ask(server, server.endpoints.control, command.SerializeToString())
+    realism = server._cameras.realism
+    assert (realism.hidden_below, realism.camera_overlap) == pytest.approx((0.3, 1.5))
+    assert (realism.camera_error, realism.false_balls) == pytest.approx((0.2, 0.5))
+    assert (realism.vision_delay, realism.processing_time) == pytest.approx((0.04, 0.01))
+    data = write_control({ME.number: RobotCommand(1.0)})
+    answer = RobotControlResponse.FromString(ask(server, server.endpoints.blue, data))
+    # Every response is lost, no command.
+    assert (list(answer.feedback), list(answer.errors)) == ([], [])
+    off = SimulatorCommand()
+    off.config.realism_config.custom.add().Pack(RealismConfigErForce(enable_invisible_ball=False))
+    ask(server, server.endpoints.control, off.SerializeToString())
+    assert server._cameras.realism.hidden_below == 0.0
 
 
 def test_what_cannot_be_configured_is_answered_with_an_error(server: SimServer) -> None:
