@@ -57,8 +57,7 @@ class Arenas:
             ball's last, with z and vz for heading and omega; empty unless
             ``keep_history``.
         sub_steps: physics steps per control period.
-        delay: from a command to its effect [s].
-        late: whether the effect comes after the period in which the command was given.
+        late: whether a robot obeys a command only after the period in which it was given.
     """
 
     def __init__(
@@ -106,14 +105,18 @@ class Arenas:
         self.touch: IntArray = self._arrays.touch
         self.history: FloatArray = self._arrays.history
         self._arrays.bodies[:, :count, :2] = np.array(until_placed(count)).reshape(count, 2)
-        self.delay = settings.realism.command_delay
+        delay = settings.realism.command_delay
         if settings.wheels is None:  # which react late anyway
-            self.delay += settings.limits.reaction
-        delay = round(self.delay / self.dt)
-        self.switch[:] = delay % self.sub_steps
-        self.late = delay >= self.sub_steps
-        # The command in force before the switch, the one after it, and those still on their way.
-        self._pipeline = [np.zeros((n, count, size(COMMAND))) for _ in range(delay // self.sub_steps + 2)]
+            delay += settings.limits.reaction
+        # Commands in force before a robot's switch, those after it, and those still on their way.
+        self._old, self._new = (np.zeros((n, count, size(COMMAND))) for _ in range(2))
+        self._waiting = np.zeros((1, n, count, size(COMMAND)))
+        self._newest = 0
+        self._periods: IntArray = np.zeros((n, count), dtype=np.int64)
+        self._arena_index, self._robot_index = np.ogrid[:n, :count]
+        self._delays = np.array([delay + (own or settings.limits).dead_time for own in limits])
+        self.delay_commands(np.arange(n), 0.0)
+        self.late = bool(self._periods.any())
 
     @property
     def _states(self) -> RecordArray:
@@ -137,14 +140,30 @@ class Arenas:
         limits: RecordArray = self._arrays.kept.view(KEPT)["limits"][..., 0]
         return limits
 
-    @property
-    def switch(self) -> IntArray:
-        """(n,) sub-step of a period from which a command is in force; may be written to as well.
+    def delay_commands(self, arenas: IntArray, extra: FloatArray | float) -> None:
+        """Let robots obey later than they do by themselves; commands on their way to them are lost.
 
-        It is the part of the command delay beyond whole periods.
+        Args:
+            arenas: indices of the m arenas.
+            extra: delay beyond the settings' and the robots' own [s], to the sub-step; (m,) for each arena
+                its own.
         """
-        switch: IntArray = self._states["switch"]
-        return switch
+        extra = np.broadcast_to(np.asarray(extra, dtype=np.float64), (len(arenas),))
+        sub_steps = np.rint((extra[:, None] + self._delays) / self.dt).astype(np.int64)
+        self._arrays.kept.view(KEPT)["switch"][arenas, :, 0] = sub_steps % self.sub_steps
+        self._periods[arenas] = sub_steps // self.sub_steps
+        longest = int(self._periods.max(initial=0)) + 1
+        if longest > len(self._waiting):
+            # In their order, the oldest first, behind others that nobody reads.
+            kept = np.roll(self._waiting, -self._newest - 1, axis=0)
+            self._waiting = np.zeros((longest, *kept.shape[1:]))
+            self._waiting[longest - len(kept) :] = kept
+            self._newest = longest - 1
+        self._forget_commands(arenas)
+
+    def _forget_commands(self, arenas: IntArray) -> None:
+        self._old[arenas] = self._new[arenas] = 0.0
+        self._waiting[:, arenas] = 0.0
 
     def place(self, robots: ArrayLike, balls: ArrayLike, arenas: ArrayLike | None = None) -> None:
         """Reset arenas: set positions and velocities, and drop commands on their way.
@@ -168,11 +187,12 @@ class Arenas:
         self._set_ball(which, ball[:, 2], ball[:, 3], self.settings.ball.placed_rolls)
         self.flight[which] = 0.0
         self._arrays.kept.view(KEPT)["cooldown"][which] = 0.0
+        for axis in ("vx", "vy", "omega"):
+            self._arrays.kept.view(KEPT)["followed"][axis][which] = 0.0
         self._arrays.drives[which] = 0.0
         self.touch[which] = -1
         self.kicked[which] = False
-        for commands in self._pipeline:
-            commands[which] = 0.0
+        self._forget_commands(which)
         self._arrays.contacts.forget(which)
         self._write()
 
@@ -243,14 +263,20 @@ class Arenas:
                 dribbler; or (n, R, 7) with the kick's angle from the ground [rad],
                 0 for a flat one. Must be finite.
         """
-        oldest = self._pipeline.pop(0)
-        if commands.shape[-1] == oldest.shape[-1]:
-            np.copyto(oldest, commands)
+        self._old, self._new = self._new, self._old
+        given = self._new
+        if len(self._waiting) > 1:
+            self._newest = (self._newest + 1) % len(self._waiting)
+            given = self._waiting[self._newest]
+        if commands.shape[-1] == given.shape[-1]:
+            np.copyto(given, commands)
         else:
-            oldest[..., :-1] = commands
-            oldest[..., -1] = 0.0
-        self._pipeline.append(oldest)
-        control_tick(self._passed, self._pipeline[0], self._pipeline[1], self.sub_steps, self.dt)
+            given[..., :-1] = commands
+            given[..., -1] = 0.0
+        if len(self._waiting) > 1:
+            then = (self._newest - self._periods) % len(self._waiting)
+            self._new[:] = self._waiting[then, self._arena_index, self._robot_index]
+        control_tick(self._passed, self._old, self._new, self.sub_steps, self.dt)
 
     def step_bare(self) -> None:
         """Step only pymunk's spaces, by pymunk's own call, as a reference for benchmarks."""

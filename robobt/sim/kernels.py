@@ -24,7 +24,7 @@ from robobt.sim.contacts.solver import ContactArrays, Solving, collide
 from robobt.sim.contacts.touching import Shapes
 from robobt.sim.flight import fly, pass_over
 from robobt.sim.hinge import take_hold, tie
-from robobt.sim.motion import drive, friction
+from robobt.sim.motion import drive, follow, friction
 from robobt.sim.mouth import carry, hold, in_mouth, keeps, kick, let_in
 from robobt.sim.records import (
     ARENA,
@@ -75,8 +75,8 @@ def control_tick(arrays_: ArenaArrays, old_: FloatArray, new_: FloatArray, sub_s
 
     Args:
         arrays_: of the arenas.
-        old_: (n, R, size(COMMAND)) commands before each arena's sub-step ``switch``, which is how
-            a command delay works; a fired kick is set to 0 in place.
+        old_: (n, R, size(COMMAND)) commands before each robot's sub-step ``switch``, which is how
+            a command's delay works; a fired kick is set to 0 in place.
         new_: (n, R, size(COMMAND)) commands from that sub-step on.
         sub_steps: physics steps in this call.
         dt: length of each [s].
@@ -118,7 +118,7 @@ def control_tick(arrays_: ArenaArrays, old_: FloatArray, new_: FloatArray, sub_s
         solving = Solving(masses[a], bias[a], memory[a], contacts, moving)
         high = False
         for step in range(sub_steps):
-            _act(arena, new[a] if step >= state.switch else old[a], dt)
+            _act(arena, old[a], new[a], step, dt)
             high = _move_ball(arena, shapes.solver, dt)
             x, y = _put_ball(arena, high)
             if by_pymunk:
@@ -138,20 +138,22 @@ def control_tick(arrays_: ArenaArrays, old_: FloatArray, new_: FloatArray, sub_s
 
 
 @compiled_inline
-def _act(arena: Arena, commands: Records[Command], dt: float) -> None:
+def _act(arena: Arena, old: Records[Command], new: Records[Command], step: int, dt: float) -> None:
     """Let the robots drive, kick and dribble for one step."""
     ball, low = arena.ball, arena.air.z < RECEIVED_HEIGHT
     ball.carrier = ball.kicker = -1
     ball.held = ball.shared = 0
     ball.pull_x = ball.pull_y = 0.0
     for i in range(len(arena.robots)):
-        command, robot, kept = commands[i], arena.robots[i], arena.kept[i]
+        robot, kept = arena.robots[i], arena.kept[i]
+        command = new[i] if step >= kept.switch else old[i]
+        follow(kept.followed, command, kept.limits, dt)
         arena.fronts[i].driven = 0.0
         begins = False
         if arena.wheels.mass > 0.0:
-            begins = drive_wheels(robot, command, kept.limits, arena.wheels, arena.drives[i], dt)
+            begins = drive_wheels(robot, kept.followed, kept.limits, arena.wheels, arena.drives[i], dt)
         else:
-            drive(robot, command, kept.limits, dt)
+            drive(robot, kept.followed, kept.limits, dt)
         if kept.cooldown > 0.0:
             kept.cooldown -= dt
         elif not (low and _kicks(arena, i, command, dt)):
@@ -171,7 +173,8 @@ def _kicks(arena: Arena, i: int, command: Command, dt: float) -> bool:
         let_in(arena.body, ball, robot, p, dt)
     if not in_mouth(arena.body, robot, p, p.body.sensor_depth):
         return False
-    kick(ball, arena.air, robot, command.kick_speed, command.kick_angle, p)
+    limits = arena.kept[i].limits
+    kick(arena.body, ball, arena.air, robot, limits, command.kick_speed, command.kick_angle, p)
     command.kick_speed = 0.0
     arena.kicked[i] = True
     arena.kept[i].cooldown = p.kicker.recharge

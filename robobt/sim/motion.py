@@ -8,9 +8,9 @@ A ball kicked from rest then rolls from ``switch_share`` of its first speed on.
 
 from __future__ import annotations
 
-from math import cos, hypot, sin, sqrt
+from math import cos, exp, hypot, sin, sqrt
 
-from robobt.sim.records import Body, Command, Parameters, SimulatedBall
+from robobt.sim.records import Body, Command, Followed, Parameters, SimulatedBall
 from robobt.world.compiled import compiled_lean
 from robobt.world.records import Limits
 
@@ -19,10 +19,41 @@ _ROUNDING_SHARE = 1.0 - 1e-9
 
 
 @compiled_lean
-def drive(robot: Body, command: Command, limits: Limits, dt: float) -> None:
-    """Move a robot's velocity towards its command within its limits."""
+def follow(followed: Followed, command: Command, limits: Limits, dt: float) -> None:
+    """Let a robot's controller follow its command with the lag of each axis."""
+    followed.vx += _caught_up(limits.lag, dt) * (command.vx - followed.vx)
+    followed.vy += _caught_up(limits.side_lag, dt) * (command.vy - followed.vy)
+    followed.omega += _caught_up(limits.turn_lag, dt) * (command.omega - followed.omega)
+    if limits.lag <= 0.0:
+        followed.vx = command.vx
+    if limits.side_lag <= 0.0:
+        followed.vy = command.vy
+    if limits.turn_lag <= 0.0:
+        followed.omega = command.omega
+
+
+@compiled_lean
+def _caught_up(lag: float, dt: float) -> float:
+    """Return the share of a difference that a first-order lag makes up in ``dt``."""
+    return 1.0 - exp(-dt / lag) if lag > 0.0 else 1.0
+
+
+@compiled_lean
+def reached(followed: Followed, limits: Limits) -> tuple[float, float, float]:
+    """Return what a robot makes of the velocity that it follows: gains and cross-talk of its axes."""
+    vx, vy = followed.vx, followed.vy
+    return (
+        limits.gain * vx + limits.cross_ahead * vy,
+        limits.side_gain * vy + limits.cross_aside * vx,
+        limits.turn_gain * followed.omega,
+    )
+
+
+@compiled_lean
+def drive(robot: Body, followed: Followed, limits: Limits, dt: float) -> None:
+    """Move a robot's velocity towards the one that it follows, within its limits."""
     c, s = cos(robot.heading), sin(robot.heading)
-    target_vx, target_vy = command.vx, command.vy
+    target_vx, target_vy, target_omega = reached(followed, limits)
     if abs(target_vx) + abs(target_vy) > limits.max_speed:
         speed = hypot(target_vx, target_vy)
         if speed > limits.max_speed:
@@ -46,7 +77,7 @@ def drive(robot: Body, command: Command, limits: Limits, dt: float) -> None:
             dy *= most / step
     robot.vx += dx
     robot.vy += dy
-    turn = min(max(command.omega, -limits.max_turn), limits.max_turn) - robot.omega
+    turn = min(max(target_omega, -limits.max_turn), limits.max_turn) - robot.omega
     most = limits.turn_acceleration * dt
     robot.omega += min(max(turn, -most), most)
 

@@ -6,6 +6,7 @@ from math import cos, hypot, sin
 
 from robobt.sim.records import Body, Flight, Parameters, SimulatedBall
 from robobt.world.compiled import compiled_lean
+from robobt.world.records import Limits
 from robobt.world.state import BALL_RADIUS
 
 _RELEASED_GAP = 2e-4
@@ -114,13 +115,27 @@ def carry(body: Body, ball: SimulatedBall, robot: Body, p: Parameters, dt: float
 
 
 @compiled_lean
-def kick(ball: SimulatedBall, air: Flight, robot: Body, speed: float, angle: float, p: Parameters) -> None:
-    """Send the ball along the heading; its sideways velocity stays, its spin is lost.
+def kick(
+    body: Body,
+    ball: SimulatedBall,
+    air: Flight,
+    robot: Body,
+    limits: Limits,
+    speed: float,
+    angle: float,
+    p: Parameters,
+) -> None:
+    """Send the ball along the heading; its spin is lost.
+
+    Of its sideways velocity, seen by the robot's front, it keeps the share ``limits.touch_kept``; of the
+    speed at which it comes it gets ``limits.touch_returned`` back.
 
     Args:
+        body: of the ball.
         ball: changed.
         air: its flight, changed.
         robot: its body.
+        limits: the robot's.
         speed: commanded [m/s].
         angle: commanded, from the ground; 0 is a flat kick, any other a chip [rad].
         p: parameters of the arena.
@@ -137,7 +152,9 @@ def kick(ball: SimulatedBall, air: Flight, robot: Body, speed: float, angle: flo
     c, s = cos(robot.heading), sin(robot.heading)
     forward = c * ball.vx + s * ball.vy
     sideways = c * ball.vy - s * ball.vx
-    forward = speed - p.kicker.damping * forward
+    forward = speed - limits.touch_returned * forward
+    front = c * robot.vy - s * robot.vx + robot.omega * (c * (body.x - robot.x) + s * (body.y - robot.y))
+    sideways -= (1.0 - limits.touch_kept) * (sideways - front)
     fast = hypot(forward, sideways)
     if angle > 0.0:
         fast = hypot(fast, air.vz)

@@ -126,11 +126,25 @@ class Hinge:
     aside: float
 
 
+class Followed:
+    """The velocity that a robot's controller follows, in the robot's frame [m/s, rad/s]."""
+
+    vx: float
+    vy: float
+    omega: float
+
+
 class Kept:
-    """What is kept of a robot beside its body: its limits, and the time until its kicker is ready [s]."""
+    """What is kept of a robot beside its body.
+
+    Its limits, the time until its kicker is ready [s], the sub-step of a period from which a command is in
+    force, and the velocity that it follows.
+    """
 
     limits: Limits
     cooldown: float
+    switch: Index
+    followed: Followed
 
 
 class WheelDrive:
@@ -209,9 +223,8 @@ class Parameters:
 
 
 class ArenaState:
-    """What is kept of an arena; a command is in force from the sub-step ``switch`` on."""
+    """What is kept of an arena."""
 
-    switch: Index
     ball: SimulatedBall
     parameters: Parameters
     wheels: Wheels

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Literal
+from collections.abc import Mapping
+from typing import ClassVar, Literal
 
 from pydantic import Field
 
@@ -112,11 +113,17 @@ class DribblerSettings(Settings):
 
 
 class KickerSettings(Settings):
-    """The kicker. The sideways velocity of the ball stays as it was at the kick."""
+    """The kicker. What a kick does to the motion of a ball that comes, the robot's limits say.
+
+    ``speed_spread`` is drawn for each kick from the world's own generator; arenas for training draw theirs
+    by randomisation.
+    """
+
+    renamed: ClassVar[Mapping[str, str]] = {"damping": "limits.touch_returned"}
 
     max_speed: float = Field(6.5, gt=0, le=20, description="fastest ball after a kick [m/s]")
-    damping: float = Field(
-        0.0, ge=0, le=1, description="share of the ball's forward speed taken off the kick"
+    speed_spread: float = Field(
+        0.0, ge=0, le=0.3, description="standard deviation of kicks' speeds, as a share of the commanded"
     )
     recharge: float = Field(0.1, ge=0, le=10, description="no kick and no dribbling after a kick [s]")
     chip_angle: float | None = Field(

@@ -101,11 +101,11 @@ _GRSIM = SimSettings(
         hold_acceleration=50.0,
         carry_aside=1.1,
         reaction=1 / 60,
-        kick_rebound=0.2,
+        touch_returned=0.2,
     ),
     dribbler=DribblerSettings(kind="glue", reach=0.01),
     kicker=KickerSettings(
-        max_speed=10.0, damping=0.2, recharge=1 / 6, chip_angle=None, chip_yield=0.969, max_chip_speed=10.0
+        max_speed=10.0, recharge=1 / 6, chip_angle=None, chip_yield=0.969, max_chip_speed=10.0
     ),
     contact=ContactSettings(
         front_friction=0.8, hull_friction=0.5, robot_restitution=0.0, robot_friction=0.5, wall_restitution=0.5
@@ -129,11 +129,11 @@ PRESETS: dict[str, SimSettings] = {
             turn_acceleration=50.0,
             catch_speed=4.0,
             hold_acceleration=50.0,
-            kick_rebound=0.2,
+            touch_returned=0.2,
         ),
         dribbler=DribblerSettings(kind="glue", reach=0.01),
         kicker=KickerSettings(
-            max_speed=20.0, damping=0.2, recharge=0.25, chip_angle=None, chip_yield=0.969, max_chip_speed=20.0
+            max_speed=20.0, recharge=0.25, chip_angle=None, chip_yield=0.969, max_chip_speed=20.0
         ),
         contact=ContactSettings(front_restitution=0.05, hull_restitution=0.5, wall_restitution=0.5),
     ),
@@ -204,9 +204,7 @@ PRESETS: dict[str, SimSettings] = {
             }
         ),
         dribbler=DribblerSettings(kind="glue", reach=0.011, idle_hold=4.3),
-        kicker=KickerSettings(
-            max_speed=7.5, damping=0.2, chip_angle=None, chip_yield=0.969, max_chip_speed=10.0
-        ),
+        kicker=KickerSettings(max_speed=7.5, chip_angle=None, chip_yield=0.969, max_chip_speed=10.0),
         contact=ContactSettings(front_restitution=0.06, hull_restitution=0.5, wall_restitution=0.5),
     ),
 }

@@ -19,7 +19,8 @@ from __future__ import annotations
 
 from math import copysign, cos, hypot, sin
 
-from robobt.sim.records import Body, Command, Records, Rim, WheelDrive, Wheels
+from robobt.sim.motion import reached
+from robobt.sim.records import Body, Followed, Records, Rim, WheelDrive, Wheels
 from robobt.world.compiled import compiled_lean
 from robobt.world.records import Limits
 
@@ -33,9 +34,9 @@ _WHEEL_SWEEPS = 8
 
 
 @compiled_lean
-def _plan(robot: Body, command: Command, limits: Limits, w: Wheels, rims: Records[Rim]) -> None:
-    """Turn the command into the wheel speeds after the next, from how fast the robot is now."""
-    vx, vy, turn = command.vx, command.vy, command.omega
+def _plan(robot: Body, followed: Followed, limits: Limits, w: Wheels, rims: Records[Rim]) -> None:
+    """Turn the velocity to follow into the wheel speeds after the next, from how fast the robot is now."""
+    vx, vy, turn = reached(followed, limits)
     speed = hypot(vx, vy)
     if speed > limits.max_speed:
         vx *= limits.max_speed / speed
@@ -62,13 +63,13 @@ def _plan(robot: Body, command: Command, limits: Limits, w: Wheels, rims: Record
 
 @compiled_lean
 def drive_wheels(
-    robot: Body, command: Command, limits: Limits, w: Wheels, drive: WheelDrive, dt: float
+    robot: Body, followed: Followed, limits: Limits, w: Wheels, drive: WheelDrive, dt: float
 ) -> bool:
     """Let the wheels turn for ``dt`` and change the robot's velocity accordingly.
 
     Args:
         robot: its body, changed.
-        command: its command.
+        followed: the velocity that it follows.
         limits: what it can do.
         w: the parameters of its wheels.
         drive: what is kept of its wheels between calls, changed.
@@ -83,7 +84,7 @@ def drive_wheels(
         drive.clock += w.frame
         for i in range(_WHEEL_COUNT):
             rims[i].target = rims[i].next
-        _plan(robot, command, limits, w, rims)
+        _plan(robot, followed, limits, w, rims)
     drive.clock -= dt
     c, s = cos(robot.heading), sin(robot.heading)
     ahead = c * robot.vx + s * robot.vy

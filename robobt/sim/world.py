@@ -141,6 +141,7 @@ class SimWorld(World):
             if not command.finite():
                 raise ValueError(f"the command for {robot} is not finite: {command}")
             sent[i] = command_row(command)
+        self._spread(sent)
         if lost is None:
             rows[:] = np.array(sent).reshape(rows.shape)
         elif lost.size:
@@ -158,6 +159,14 @@ class SimWorld(World):
             self._report = self._perceive()
         if self.settings.realism.response_loss > 0.0:
             self._felt = self._responses()
+
+    def _spread(self, sent: list[tuple[float, ...]]) -> None:
+        """Draw how much kicks differ from their commands."""
+        spread = self.settings.kicker.speed_spread
+        if spread > 0.0:
+            factors = 1.0 + spread * np.clip(self._rng.standard_normal(len(sent)), -3.0, 3.0)
+            for i, (row, factor) in enumerate(zip(sent, factors.tolist(), strict=True)):
+                sent[i] = (*row[:3], row[3] * factor, *row[4:])
 
     def seen_kicks(self) -> list[tuple[RobotId, float]] | None:
         """See :meth:`robobt.world.World.seen_kicks`; a kick ticks after its command is reported."""

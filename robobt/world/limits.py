@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from math import hypot
+from typing import ClassVar
+
 from pydantic import Field
 
 from robobt.config.validation import Settings
@@ -14,7 +18,14 @@ class RobotLimits(Settings):
     ``turn_braking`` to ``turn_acceleration``, ``receive_speed`` to ``catch_speed``. The
     defaults are the typical league robot of the simulators' presets: 3 m/s, 3 m/s^2,
     braking at 6 m/s^2, and a dribbler that pulls at the ball with 4 m/s^2.
+
+    A real robot answers a commanded velocity late and in part. After ``dead_time`` its controller follows the
+    command with the first-order ``lag`` of each axis; of what it follows it reaches the share ``gain``, and
+    ``cross_ahead`` of the sideways and ``cross_aside`` of the forward velocity appear on the other axis. The
+    speeds and accelerations above limit the result.
     """
+
+    renamed: ClassVar[Mapping[str, str]] = {"kick_rebound": "touch_returned"}
 
     max_speed: float = Field(3.0, gt=0, le=10, description="top speed in any direction [m/s]")
     acceleration: float = Field(3.0, gt=0, le=50, description="speeding up along the heading [m/s^2]")
@@ -37,11 +48,31 @@ class RobotLimits(Settings):
         None, gt=0, le=10, description="speed sideways at which it keeps it; None: any [m/s]"
     )
     reaction: float = Field(
-        0.0, ge=0, le=0.05, description="time that the robot itself takes from a command to its effect [s]"
+        0.0,
+        ge=0,
+        le=0.05,
+        description="time from a command to its effect that pilots allow for, as no prediction does [s]",
     )
-
-    kick_rebound: float = Field(
-        0.0, ge=0, le=1, description="share of the speed of a ball that comes at the robot which a kick adds"
+    dead_time: float = Field(
+        0.0, ge=0, le=0.3, description="time from a command's arrival to the robot's first motion [s]"
+    )
+    lag: float = Field(0.0, ge=0, le=0.3, description="time constant along the heading [s]")
+    side_lag: float = Field(0.0, ge=0, le=0.3, description="time constant sideways [s]")
+    turn_lag: float = Field(0.0, ge=0, le=0.3, description="time constant of turning [s]")
+    gain: float = Field(1.0, gt=0.2, le=2, description="share of a forward velocity that is reached")
+    side_gain: float = Field(1.0, gt=0.2, le=2, description="share of a sideways velocity that is reached")
+    turn_gain: float = Field(1.0, gt=0.2, le=2, description="share of a turning rate that is reached")
+    cross_ahead: float = Field(
+        0.0, ge=-0.5, le=0.5, description="share of a sideways velocity that appears ahead"
+    )
+    cross_aside: float = Field(
+        0.0, ge=-0.5, le=0.5, description="share of a forward velocity that appears to the left"
+    )
+    touch_kept: float = Field(
+        1.0, ge=0, le=1, description="share of a ball's sideways velocity, seen by the robot, kept by a kick"
+    )
+    touch_returned: float = Field(
+        0.0, ge=-1, le=1, description="share of the speed of a ball that comes at the robot which a kick adds"
     )
 
     @property
@@ -64,6 +95,41 @@ class RobotLimits(Settings):
         """Rate at which a turn is slowed down [rad/s^2]."""
         return self.turn_acceleration if self.turn_braking is None else self.turn_braking
 
+    @property
+    def answers_as_commanded(self) -> bool:
+        """Whether the robot reaches each velocity that it is commanded: gains of 1, no cross-talk."""
+        return (
+            self.gain,
+            self.side_gain,
+            self.turn_gain,
+            self.cross_ahead,
+            self.cross_aside,
+        ) == _AS_COMMANDED
+
+    def command_for(self, vx: float, vy: float, omega: float) -> tuple[float, float, float]:
+        """Return the command by which the robot reaches a velocity, all in its own frame.
+
+        Args:
+            vx: wanted velocity ahead [m/s].
+            vy: wanted velocity to the left [m/s].
+            omega: wanted turning rate [rad/s].
+
+        Returns:
+            velocity ahead, to the left and turning rate to command; no faster than ``max_speed`` and
+            ``max_turn``, in the direction in which the wanted velocity is reached.
+        """
+        if self.answers_as_commanded:
+            return vx, vy, omega
+        whole = self.gain * self.side_gain - self.cross_ahead * self.cross_aside
+        ahead = (self.side_gain * vx - self.cross_ahead * vy) / whole
+        aside = (self.gain * vy - self.cross_aside * vx) / whole
+        turn = min(max(omega / self.turn_gain, -self.max_turn), self.max_turn)
+        fast = hypot(ahead, aside)
+        if fast > self.max_speed:
+            ahead *= self.max_speed / fast
+            aside *= self.max_speed / fast
+        return ahead, aside, turn
+
     def scaled(self, factor: float) -> RobotLimits:
         """Return the same robot with its top speed and turning rate times ``factor``.
 
@@ -74,5 +140,7 @@ class RobotLimits(Settings):
             update={"max_speed": self.max_speed * factor, "max_turn": self.max_turn * factor}
         )
 
+
+_AS_COMMANDED = (1.0, 1.0, 1.0, 0.0, 0.0)
 
 DEFAULT_LIMITS = RobotLimits()

@@ -50,7 +50,7 @@ class Place(Protocol):
 
 
 class Limits(Protocol):
-    """What driving needs of :class:`~robobt.world.limits.RobotLimits`, by the same names."""
+    """What driving and kicking need of :class:`~robobt.world.limits.RobotLimits`, by the same names."""
 
     max_speed: float
     acceleration: float
@@ -61,6 +61,16 @@ class Limits(Protocol):
     turn_acceleration: float
     angular_braking: float
     reaction: float
+    lag: float
+    side_lag: float
+    turn_lag: float
+    gain: float
+    side_gain: float
+    turn_gain: float
+    cross_ahead: float
+    cross_aside: float
+    touch_kept: float
+    touch_returned: float
 
 
 class Mover(Protocol):

@@ -50,16 +50,10 @@ def test_a_name_is_a_preset() -> None:
     assert settings_from("grsim") == preset("grsim")
 
 
-@pytest.mark.parametrize("name", sorted(PRESETS))
-def test_robots_know_what_their_kicker_adds_to_a_ball_that_comes(name: str) -> None:
-    settings = PRESETS[name]
-    assert settings.limits.kick_rebound == settings.kicker.damping
-
-
 def test_a_mapping_changes_a_preset_and_keeps_the_rest() -> None:
     settings = settings_from({"preset": "grsim", "kicker": {"max_speed": 6.5}, "realism": "realistic"})
     assert settings.kicker.max_speed == 6.5
-    assert settings.kicker.damping == preset("grsim").kicker.damping
+    assert settings.limits.touch_returned == preset("grsim").limits.touch_returned
     assert settings.realism == REALISM["realistic"]
     assert settings.ball == preset("grsim").ball
 

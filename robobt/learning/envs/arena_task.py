@@ -378,7 +378,7 @@ class ArenaTask:
             if self._own_reward or self._own_ends:
                 ended = self._step_with_own(given, rewards, ends)
             else:
-                self.arenas.step(self._randomiser.delayed(self._carried()))
+                self.arenas.step(self._carried())
                 ended = self._judge(given, rewards, ends)
             if tick == last or self._perception.follows:
                 final = self._perception.look(self.arenas.robots, self.arenas.balls)
@@ -403,7 +403,7 @@ class ArenaTask:
         arenas, progress, blue = self.arenas, self._progress, self.blue
         field, going = self.settings.field, ~ends.over
         robots, balls = arenas.robots.copy(), arenas.balls.copy()
-        arenas.step(self._randomiser.delayed(self._carried()))
+        arenas.step(self._carried())
         judged_ends, total = ends.copy(), progress["total_reward"].copy()
         self._term_rows[:] = 0.0
         self._judge(actions, np.zeros(self.n), judged_ends)

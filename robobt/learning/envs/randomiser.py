@@ -9,13 +9,17 @@ import numpy as np
 from robobt.learning.envs.settings import RandomisationSettings, Span, TaskSettings
 from robobt.learning.envs.task import FloatArray, IntArray
 from robobt.sim.arenas import Arenas
-from robobt.sim.records import COMMAND, size
 
 _ACCELERATIONS = ("acceleration", "braking", "lateral_acceleration", "lateral_braking", "turn_acceleration")
 
 
+_LAGS = ("lag", "side_lag", "turn_lag")
+_GAINS = ("gain", "side_gain", "turn_gain")
+_ANSWERS = ("lag", "gain", "touch_kept")
+
+
 class Randomiser:
-    """Sets each arena's parameters at the start of an episode, and delays its commands.
+    """Sets each arena's parameters at the start of an episode.
 
     Speed, accelerations and kicks are changed for an arena's first robot, the learner.
 
@@ -31,19 +35,16 @@ class Randomiser:
         self.acceleration = np.ones(n)
         self.top_speed = np.ones(n)
         self._ranges = settings.randomisation
-        self._active = settings.randomisation != RandomisationSettings()
+        none = RandomisationSettings()
+        self._active = self._ranges != none
+        # Drawn beside the others only where asked for, so that a seed draws what it drew without them.
+        self._answers = any(getattr(self._ranges, name) != getattr(none, name) for name in _ANSWERS)
         self._arenas = arenas
         self._rngs = rngs
         self._arena_parameters = arenas.arena_parameters.copy()
         self._robot_parameters = arenas.robot_parameters.copy()
         self._grip = arenas.wheel_parameters["tangent_friction"].copy()
         self._mass = settings.simulator.body.mass
-        longest = round(self._ranges.control_delay[1] / arenas.dt) // arenas.sub_steps
-        self._delay: IntArray = np.zeros(n, dtype=np.int64)
-        # Whole periods of delay are kept here; the arenas handle the remainder.
-        self._waiting = np.zeros((longest + 2, *arenas.contact.shape, size(COMMAND)))
-        self._newest = 0
-        self._all = np.arange(n)
 
     def draw(self, which: IntArray) -> None:
         """Draw the parameters of these arenas at the start of their episodes."""
@@ -73,19 +74,20 @@ class Randomiser:
             for arena, factor in zip(which.tolist(), mass.tolist(), strict=True):
                 arenas.weigh(arena, self._mass * factor)
         if ranges.control_delay != (0.0, 0.0):
-            sub_steps = np.rint((delay + arenas.delay % arenas.period) / arenas.dt).astype(np.int64)
-            arenas.switch[which] = sub_steps % arenas.sub_steps
-            self._delay[which] = sub_steps // arenas.sub_steps
-            self._waiting[:, which] = 0.0
+            arenas.delay_commands(which, delay)
+        if self._answers:
+            self._draw_answer(which)
 
-    def delayed(self, commands: FloatArray) -> FloatArray:
-        """Return the commands that reach the robots in this period, (n, R, size(COMMAND))."""
-        if self._ranges.control_delay == (0.0, 0.0):
-            return commands
-        self._newest = (self._newest + 1) % len(self._waiting)
-        self._waiting[self._newest] = commands
-        late: FloatArray = self._waiting[(self._newest - self._delay) % len(self._waiting), self._all]
-        return late
+    def _draw_answer(self, which: IntArray) -> None:
+        """Draw how the robot answers its commands, and its kick's touch."""
+        ranges, own, now = self._ranges, self._robot_parameters[:, 0], self._arenas.robot_parameters[:, 0]
+        drawn = np.array([self._rngs[arena].random(7) for arena in which.tolist()]).T
+        for name, share in zip(_LAGS, drawn[:3], strict=True):
+            now[name][which] = own[name][which] + _within(ranges.lag, share)
+        for name, share in zip(_GAINS, drawn[3:6], strict=True):
+            now[name][which] = own[name][which] * _within(ranges.gain, share)
+        if ranges.touch_kept is not None:
+            now["touch_kept"][which] = _within(ranges.touch_kept, drawn[6])
 
 
 def _within(span: Span, share: FloatArray) -> FloatArray:

@@ -81,7 +81,8 @@ class NoiseSettings(Settings):
 class RandomisationSettings(OrderedSettings):
     """Domain randomisation: each parameter is drawn uniformly from its range at the start of an episode.
 
-    All except the delay are factors on the simulator's value.
+    All are factors on the simulator's value, except delay and lag, which are added to it, and ``touch_kept``,
+    which replaces it. The axes' lags and gains are drawn independently.
     """
 
     friction: Span = Field((1.0, 1.0), description="on the ball's sliding and rolling deceleration")
@@ -93,16 +94,25 @@ class RandomisationSettings(OrderedSettings):
     kick_speed: Span = Field((1.0, 1.0), description="on the speed of kicks")
     dribbler: Span = Field((1.0, 1.0), description="on the dribbler's pull and side acceleration")
     control_delay: Span = Field((0.0, 0.0), description="command to effect, to the sub-step [s]")
+    lag: Span = Field((0.0, 0.0), description="time constant of each axis of the robot [s]")
+    gain: Span = Field((1.0, 1.0), description="on the share of a velocity that each axis reaches")
+    touch_kept: Span | None = Field(
+        None, description="share of the ball's sideways velocity that a kick keeps; none for the limits'"
+    )
 
     @model_validator(mode="after")
     def _sensible(self) -> Self:
-        for name in ("friction", "acceleration", "top_speed", "mass", "kick_speed"):
+        for name in ("friction", "acceleration", "top_speed", "mass", "kick_speed", "gain"):
             if getattr(self, name)[0] <= 0.0:
                 raise ValueError(f"{name} must be above 0")
         if self.dribbler[0] < 0.0:
             raise ValueError("dribbler must not be negative")
         if not 0.0 <= self.control_delay[0] <= self.control_delay[1] <= 0.5:
             raise ValueError("control_delay must lie in [0, 0.5] s")
+        if not 0.0 <= self.lag[0] <= self.lag[1] <= 0.3:
+            raise ValueError("lag must lie in [0, 0.3] s")
+        if self.touch_kept is not None and not 0.0 <= self.touch_kept[0] <= self.touch_kept[1] <= 1.0:
+            raise ValueError("touch_kept must lie in [0, 1]")
         return self
 
 

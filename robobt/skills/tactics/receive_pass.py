@@ -118,7 +118,7 @@ class ReceivePass(Skill):
             c, s = cos(me.heading), sin(me.heading)
             order.kick_speed = (
                 redirect_kick((c * uy - s * ux) * v, tactics.shot_speed, tactics.fastest)
-                + me.limits.kick_rebound * (c * ux + s * uy) * v
+                + me.limits.touch_returned * (c * ux + s * uy) * v
             )
             order.kick_trigger = KickTrigger.ON_CONTACT
             self._armed, self._armed_at = order.kick_speed, frame.time
