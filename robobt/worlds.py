@@ -36,7 +36,12 @@ def sim_world(scenario: Scenario) -> World:
     limits = {robot: setup.limits_over(settings.limits) for robot, setup in scenario.robots}
     world = SimWorld(scenario.field, limits, settings, scenario.period)
     realism = settings.realism
-    if not scenario.predict or realism.vision_delay + realism.command_delay == 0.0:
+    late = (
+        realism.vision_delay
+        + realism.command_delay
+        + max(((own or settings.limits).dead_time for own in limits.values()), default=0.0)
+    )
+    if not scenario.predict or late == 0.0:
         return world
     return PredictedWorld(
         world, realism.vision_delay, realism.command_delay, gaps=realism.missing_robot > 0.0

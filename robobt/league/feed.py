@@ -147,10 +147,16 @@ class Feed:
             positive = self.referee.blue_on_positive_half
         return -1.0 if positive else 1.0
 
-    def frame_at(self, time: float) -> Frame:
-        """Return the field at a time on the vision's clock, seen from blue's side."""
+    def frame_at(self, time: float, to_effect: bool = False) -> Frame:
+        """Return the field at a time on the vision's clock, seen from blue's side.
+
+        Args:
+            time: of the frame [s].
+            to_effect: see :meth:`robobt.league.estimate.filter.VisionFilter.frame_at`.
+        """
         captured = self.filter.captured
-        frame = self.filter.frame_at(time if captured is None else min(time, captured + _LONGEST_PREDICTION))
+        at = time if captured is None else min(time, captured + _LONGEST_PREDICTION)
+        frame = self.filter.frame_at(at, to_effect)
         frame.game = self._game(frame)
         return frame
 

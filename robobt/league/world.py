@@ -144,8 +144,8 @@ class LeagueWorld(World, Closing):
         self._watch.begin()
 
     def observe(self) -> Frame:
-        """Return the field predicted to now, seen from blue's side."""
-        return self._frame(self._looked_at)
+        """Return the field predicted to now, and on by the robots' dead time, seen from blue's side."""
+        return self._frame(self._looked_at, to_effect=True)
 
     def truth(self) -> Frame:
         """Return the field at the last capture, without prediction, seen from blue's side."""
@@ -262,8 +262,8 @@ class LeagueWorld(World, Closing):
         self._time = max(self._time + _STALLED_TIME_RATE * elapsed, there - self._began)
         self._looked, self._looked_at = now, there
 
-    def _frame(self, at: float) -> Frame:
-        frame = self._feed.frame_at(at)
+    def _frame(self, at: float, to_effect: bool = False) -> Frame:
+        frame = self._feed.frame_at(at, to_effect)
         frame.time = self._time
         frame.period = self.period
         return frame

@@ -28,6 +28,7 @@ from robobt.signals import check, let_go
 from robobt.skills.aim.raters.shot_predictor import load_shot_predictors
 from robobt.skills.ball.learned_control import load_shipped_policies
 from robobt.tree import Behaviour
+from robobt.world.answer import compensated
 from robobt.world.command import RobotCommand
 from robobt.world.compiled import timing_compilation
 from robobt.world.game import OPEN_PLAY, GameState, Team
@@ -200,7 +201,7 @@ class MatchLoop(Closing):
         if self.outcome is not None:
             return False
         self._carry(frame)
-        self.world.act(self._commands)
+        self.world.act(compensated(self._commands, frame))
         return True
 
     def result(self, wall_time: float = 0.0) -> MatchResult:

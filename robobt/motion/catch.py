@@ -48,7 +48,7 @@ def catch(me: RobotState, ball: BallState, limits: RobotLimits, period: float) -
     left = dy * ux - dx * uy
     side = 1.0 if left >= 0.0 else -1.0
     leftward = me.vy * ux - me.vx * uy
-    stands = period + 2.0 * me.limits.reaction
+    stands = period + 2.0 * me.limits.trailing_time
     step = limits.acceleration * stands
     gentle = _GIVING_SHARE * limits.acceleration
     most = min(limits.max_speed, abs(left) / _SETTLES)

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from functools import lru_cache
+from math import cos, sin
 
 from robobt.motion.pilot import command, turn_rate
 from robobt.world.command import RobotCommand
 from robobt.world.limits import RobotLimits
-from robobt.world.state import RobotState
+from robobt.world.state import BallState, RobotState
 
 MAX_TURN = 2.0
 """Turning rate at which every dribbler of the simulator's presets holds the ball [rad/s]."""
@@ -49,3 +50,14 @@ def turn_with_ball(me: RobotState, heading: float, limits: RobotLimits, period: 
     turn = command(me, 0.0, 0.0, turn_rate(me, heading, limits, period), limits, period)
     turn.dribbler = True
     return turn
+
+
+def sideways_after_kick(me: RobotState, ball: BallState) -> float:
+    """Return the velocity across the heading, to the left, that the ball would have after a kick [m/s].
+
+    Of its velocity along the robot's front it keeps the share ``limits.touch_kept``.
+    """
+    c, s = cos(me.heading), sin(me.heading)
+    sideways = c * ball.vy - s * ball.vx
+    front = c * me.vy - s * me.vx + me.omega * (c * (ball.x - me.x) + s * (ball.y - me.y))
+    return sideways - (1.0 - me.limits.touch_kept) * (sideways - front)

@@ -224,7 +224,7 @@ def travel_law(
         The velocity ahead and to the left [m/s] and the turning rate [rad/s].
     """
     me, period = trip.me, scene.period
-    gentle, top = other or own.reaction > 0.0, given.max_speed
+    gentle, top = other or own.trailing_time > 0.0, given.max_speed
     if scene.max_speed < top:
         gentle, top = True, scene.max_speed
     goal = allowed_place(trip, scene)

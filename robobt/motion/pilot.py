@@ -115,7 +115,7 @@ def roughly(heading: float, wanted: float, slack: float) -> float:
 
 def _limits(me: RobotState, limits: RobotLimits) -> tuple[FloatArray, FloatArray, bool]:
     """Return the robot's own limits, the given ones, and whether the robot does not keep to them itself."""
-    return limits_of(me.limits), limits_of(limits), limits is not me.limits or me.limits.reaction > 0.0
+    return limits_of(me.limits), limits_of(limits), limits is not me.limits or me.limits.trailing_time > 0.0
 
 
 @compiled
@@ -190,7 +190,7 @@ def wanted_velocity(
     dx, dy = target[0] - me.x, target[1] - me.y
     distance = hypot(dx, dy)
     vx = vy = 0.0
-    stands = period + 2.0 * own.reaction
+    stands = period + 2.0 * own.trailing_time
     if distance > 0.0:
         ux, uy = dx / distance, dy / distance
         bearing = atan2(uy, ux) - me.heading
@@ -243,12 +243,12 @@ def turn_law(me: Robot, heading: float, own: Limits, given: Limits, period: floa
     omega = me.omega
     error = wrap_angle(heading - me.heading)
     side = 1.0 if error >= 0.0 else -1.0
-    stands = period + 2.0 * own.reaction
+    stands = period + 2.0 * own.trailing_time
     rate = side * approach_speed(
         side * error, side * omega, given.max_turn, given.turn_acceleration, given.angular_braking, stands
     )
     if given.turn_acceleration < own.turn_acceleration:
-        step = given.turn_acceleration * (period + own.reaction)
+        step = given.turn_acceleration * (period + own.trailing_time)
         rate = min(omega + step, max(omega - step, rate))
     return rate
 
@@ -352,7 +352,7 @@ def _gentle(me: Robot, vx: float, vy: float, own: Limits, given: Limits, period:
         return (vx, vy)
     bearing = atan2(dy, dx) - me.heading
     rate = along(given.acceleration, given.lateral_acceleration, bearing)
-    lead = own.reaction
+    lead = own.trailing_time
     if rate >= along(own.acceleration, own.lateral_acceleration, bearing):
         lead *= 2.0
         if lead == 0.0:

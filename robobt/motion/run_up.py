@@ -40,7 +40,7 @@ def run_up(
     ahead, leftward = vx * ux + vy * uy, vy * ux - vx * uy
     side = 1.0 if left >= 0.0 else -1.0
     aside, closing = side * left, side * leftward
-    stands = period + 2.0 * me.limits.reaction
+    stands = period + 2.0 * me.limits.trailing_time
     acceleration = min(limits.acceleration, limits.lateral_acceleration)
     braking = min(limits.braking, limits.lateral_braking)
     until_on_line = travel_time(max(0.0, aside - _ON_LINE), closing, limits)

@@ -92,7 +92,7 @@ def clear_velocity(
     near = _obstacles(trip, scene, movers, speed, needed, goal)
     faster = min(given.acceleration, given.lateral_acceleration)
     slower = min(given.braking, given.lateral_braking)
-    lag = own.reaction + 0.5 * scene.period
+    lag = own.trailing_time + 0.5 * scene.period
     if _free_for(near, me, wanted, faster, slower, lag) >= needed:
         return wanted
     bounded = is_open(trip, scene, x, y, scene.their_gap)

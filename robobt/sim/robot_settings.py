@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import ClassVar, Literal
+from typing import Literal
 
 from pydantic import Field
 
@@ -113,15 +112,16 @@ class DribblerSettings(Settings):
 
 
 class KickerSettings(Settings):
-    """The kicker. What a kick does to the motion of a ball that comes, the robot's limits say.
+    """The kicker. What a kick keeps of the ball's sideways velocity, the robot's limits say.
 
     ``speed_spread`` is drawn for each kick from the world's own generator; arenas for training draw theirs
     by randomisation.
     """
 
-    renamed: ClassVar[Mapping[str, str]] = {"damping": "limits.touch_returned"}
-
     max_speed: float = Field(6.5, gt=0, le=20, description="fastest ball after a kick [m/s]")
+    damping: float = Field(
+        0.0, ge=0, le=1, description="share of the ball's forward speed taken off the kick"
+    )
     speed_spread: float = Field(
         0.0, ge=0, le=0.3, description="standard deviation of kicks' speeds, as a share of the commanded"
     )

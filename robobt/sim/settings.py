@@ -14,6 +14,7 @@ from pydantic import Field
 
 from robobt.config.errors import unknown_name
 from robobt.config.validation import Settings
+from robobt.sim.real_robots import IDENTIFIED_ROBOTS, REAL_FIELDS, REAL_LIMITS, RealField
 from robobt.sim.realism import RealismSettings, realism_level
 from robobt.sim.robot_settings import (
     BodySettings,
@@ -101,17 +102,35 @@ _GRSIM = SimSettings(
         hold_acceleration=50.0,
         carry_aside=1.1,
         reaction=1 / 60,
-        touch_returned=0.2,
+        kick_rebound=0.2,
     ),
     dribbler=DribblerSettings(kind="glue", reach=0.01),
     kicker=KickerSettings(
-        max_speed=10.0, recharge=1 / 6, chip_angle=None, chip_yield=0.969, max_chip_speed=10.0
+        max_speed=10.0, damping=0.2, recharge=1 / 6, chip_angle=None, chip_yield=0.969, max_chip_speed=10.0
     ),
     contact=ContactSettings(
         front_friction=0.8, hull_friction=0.5, robot_restitution=0.0, robot_friction=0.5, wall_restitution=0.5
     ),
     sub_step=1 / 300,
 )
+
+
+def _real(field: RealField, limits: RobotLimits) -> SimSettings:
+    """Return a field with robots of these limits. Kicker: Sumatra's ``bot-configs.json``."""
+    touch = {"touch_kept": field.touch_kept, "kick_rebound": field.touch_returned}
+    return SimSettings(
+        ball=BallSettings(
+            slide_deceleration=field.slide_deceleration,
+            switch_share=0.64,
+            roll_deceleration=field.roll_deceleration,
+            first_hop=0.78,
+            other_hops=0.9,
+            rebound=0.48,
+        ),
+        limits=limits.model_copy(update=touch),
+        kicker=KickerSettings(max_speed=8.0, max_chip_speed=8.0, recharge=0.08, damping=field.touch_returned),
+    )
+
 
 PRESETS: dict[str, SimSettings] = {
     "default": SimSettings(),
@@ -129,11 +148,11 @@ PRESETS: dict[str, SimSettings] = {
             turn_acceleration=50.0,
             catch_speed=4.0,
             hold_acceleration=50.0,
-            touch_returned=0.2,
+            kick_rebound=0.2,
         ),
         dribbler=DribblerSettings(kind="glue", reach=0.01),
         kicker=KickerSettings(
-            max_speed=20.0, recharge=0.25, chip_angle=None, chip_yield=0.969, max_chip_speed=20.0
+            max_speed=20.0, damping=0.2, recharge=0.25, chip_angle=None, chip_yield=0.969, max_chip_speed=20.0
         ),
         contact=ContactSettings(front_restitution=0.05, hull_restitution=0.5, wall_restitution=0.5),
     ),
@@ -186,9 +205,12 @@ PRESETS: dict[str, SimSettings] = {
             catch_speed=1.0,
             receive_speed=3.0,
             hold_acceleration=15.0,
+            # What its authors expect of simulators; real fields' figures are those of real_2022 to real_2025.
+            touch_kept=0.8,
+            kick_rebound=0.2,
         ),
         dribbler=DribblerSettings(kind="force", pull=20.0, side=20.0, reach=0.01),
-        kicker=KickerSettings(max_speed=7.5, max_chip_speed=5.5),
+        kicker=KickerSettings(max_speed=7.5, max_chip_speed=5.5, damping=0.2),
         contact=ContactSettings(front_restitution=0.0, goal_restitution=0.3),
     ),
     "robobulls": SimSettings(
@@ -204,9 +226,13 @@ PRESETS: dict[str, SimSettings] = {
             }
         ),
         dribbler=DribblerSettings(kind="glue", reach=0.011, idle_hold=4.3),
-        kicker=KickerSettings(max_speed=7.5, chip_angle=None, chip_yield=0.969, max_chip_speed=10.0),
+        kicker=KickerSettings(
+            max_speed=7.5, damping=0.2, chip_angle=None, chip_yield=0.969, max_chip_speed=10.0
+        ),
         contact=ContactSettings(front_restitution=0.06, hull_restitution=0.5, wall_restitution=0.5),
     ),
+    **{name: _real(field, REAL_LIMITS) for name, field in REAL_FIELDS.items()},
+    **{name: _real(REAL_FIELDS["real_2025"], limits) for name, limits in IDENTIFIED_ROBOTS.items()},
 }
 """Named presets. ``robobulls`` has the kicks that RoboBulls' software sends, and a simpler grSim: a robot
 that follows its commands within limits, a dribbler that takes every ball and a hull that lets none roll off.

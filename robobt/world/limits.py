@@ -2,10 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from math import hypot
-from typing import ClassVar
-
 from pydantic import Field
 
 from robobt.config.validation import Settings
@@ -24,8 +20,6 @@ class RobotLimits(Settings):
     ``cross_ahead`` of the sideways and ``cross_aside`` of the forward velocity appear on the other axis. The
     speeds and accelerations above limit the result.
     """
-
-    renamed: ClassVar[Mapping[str, str]] = {"kick_rebound": "touch_returned"}
 
     max_speed: float = Field(3.0, gt=0, le=10, description="top speed in any direction [m/s]")
     acceleration: float = Field(3.0, gt=0, le=50, description="speeding up along the heading [m/s^2]")
@@ -71,8 +65,8 @@ class RobotLimits(Settings):
     touch_kept: float = Field(
         1.0, ge=0, le=1, description="share of a ball's sideways velocity, seen by the robot, kept by a kick"
     )
-    touch_returned: float = Field(
-        0.0, ge=-1, le=1, description="share of the speed of a ball that comes at the robot which a kick adds"
+    kick_rebound: float = Field(
+        0.0, ge=0, le=1, description="share of the speed of a ball that comes at the robot which a kick adds"
     )
 
     @property
@@ -96,6 +90,16 @@ class RobotLimits(Settings):
         return self.turn_acceleration if self.turn_braking is None else self.turn_braking
 
     @property
+    def trailing_time(self) -> float:
+        """Time by which motion trails a command beyond what predictions take out [s]."""
+        return self.reaction + self.longest_lag
+
+    @property
+    def longest_lag(self) -> float:
+        """The longest time constant of an axis [s]."""
+        return max(self.lag, self.side_lag, self.turn_lag)
+
+    @property
     def answers_as_commanded(self) -> bool:
         """Whether the robot reaches each velocity that it is commanded: gains of 1, no cross-talk."""
         return (
@@ -115,20 +119,15 @@ class RobotLimits(Settings):
             omega: wanted turning rate [rad/s].
 
         Returns:
-            velocity ahead, to the left and turning rate to command; no faster than ``max_speed`` and
-            ``max_turn``, in the direction in which the wanted velocity is reached.
+            velocity ahead, to the left and turning rate to command; for gains below 1 it may be faster than
+            ``max_speed``, which limits what the robot reaches.
         """
         if self.answers_as_commanded:
             return vx, vy, omega
         whole = self.gain * self.side_gain - self.cross_ahead * self.cross_aside
         ahead = (self.side_gain * vx - self.cross_ahead * vy) / whole
         aside = (self.gain * vy - self.cross_aside * vx) / whole
-        turn = min(max(omega / self.turn_gain, -self.max_turn), self.max_turn)
-        fast = hypot(ahead, aside)
-        if fast > self.max_speed:
-            ahead *= self.max_speed / fast
-            aside *= self.max_speed / fast
-        return ahead, aside, turn
+        return ahead, aside, omega / self.turn_gain
 
     def scaled(self, factor: float) -> RobotLimits:
         """Return the same robot with its top speed and turning rate times ``factor``.

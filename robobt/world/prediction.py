@@ -6,8 +6,10 @@ from collections import deque
 from collections.abc import Mapping
 from dataclasses import replace
 from math import ceil, cos, exp, hypot, sin, sqrt
+from statistics import fmean
 from typing import NamedTuple
 
+from robobt.world.answer import FollowedCommand
 from robobt.world.ball_model import GRAVITY
 from robobt.world.command import RobotCommand
 from robobt.world.geometry import wrap_angle
@@ -54,7 +56,8 @@ class _LastSeen(NamedTuple):
 class PredictedWorld(WrappedWorld):
     """A world whose frames are predicted to the present from the commands sent.
 
-    Every robot is moved on from where it was seen, by the commands in force since then and within its limits.
+    Every robot is moved on from where it was seen, by the commands in force since then and within its limits,
+    to the moment at which the next command moves it: after the command's delay and its own dead time.
     A ball in the mouth, which the robot's sensor reports without delay, moves with its robot; any other ball
     rolls on as observed.
 
@@ -104,7 +107,9 @@ class PredictedWorld(WrappedWorld):
         self.world.act(commands)
 
     def _moved(self, robot: RobotId, seen: RobotState) -> RobotState:
-        until = self._now + self.command_delay
+        limits = seen.limits
+        delay = self.command_delay + limits.dead_time
+        until = self._now + delay
         since = self._now - self.vision_delay
         if self._gaps:
             last = self._missed.get(robot)
@@ -113,16 +118,22 @@ class PredictedWorld(WrappedWorld):
             self._missed[robot] = _LastSeen(seen, since)
         if since < 0.0:
             since = min(0.0, until)
-        state = replace(seen)
+        state, followed = replace(seen), FollowedCommand()
         for i, (time, commands) in enumerate(self._sent):
-            begin = max(since, time + self.command_delay)
-            end = until if i + 1 == len(self._sent) else self._sent[i + 1].time + self.command_delay
+            command = commands.get(robot, _STAND_STILL)
+            begin, end = time + delay, until
+            if i + 1 < len(self._sent):
+                end = self._sent[i + 1].time + delay
+            if limits.longest_lag > 0.0 and begin < since:
+                followed.follow(command, limits, min(since, end) - begin)
+            begin = max(since, begin)
             if end > begin:
-                _drive(state, commands.get(robot, _STAND_STILL), min(end, until) - begin)
+                _drive(state, followed, command, min(end, until) - begin)
         return state
 
     def _ball(self, seen: Frame, now: tuple[RobotState, ...]) -> BallState:
-        ball, age = seen.ball, self.vision_delay + self.command_delay
+        dead = fmean(robot.limits.dead_time for robot in now) if now else 0.0
+        ball, age = seen.ball, self.vision_delay + self.command_delay + dead
         both = zip(seen.own + seen.opponents, now, strict=True)
         holding = [(before, after) for before, after in both if after.ball_contact]
         if holding:
@@ -180,18 +191,20 @@ def _same(one: RobotState, other: RobotState) -> bool:
     return (one.x, one.y, one.heading) == (other.x, other.y, other.heading)
 
 
-def _drive(state: RobotState, command: RobotCommand, time: float) -> None:
+def _drive(state: RobotState, followed: FollowedCommand, command: RobotCommand, time: float) -> None:
     """Move a robot on under one command, as its limits let it; they form an ellipse in its frame."""
     limits = state.limits
     steps = max(1, ceil(time / _PREDICTION_STEP - 1e-9))
     dt = time / steps
-    fast = hypot(command.vx, command.vy)
-    share = min(1.0, limits.max_speed / fast) if fast > 0.0 else 1.0
-    turn = min(limits.max_turn, max(-limits.max_turn, command.omega))
     for _ in range(steps):
+        followed.follow(command, limits, dt)
+        vx, vy, omega = followed.reached(limits)
+        fast = hypot(vx, vy)
+        share = min(1.0, limits.max_speed / fast) if fast > 0.0 else 1.0
+        turn = min(limits.max_turn, max(-limits.max_turn, omega))
         c, s = cos(state.heading), sin(state.heading)
-        dx = share * (c * command.vx - s * command.vy) - state.vx
-        dy = share * (s * command.vx + c * command.vy) - state.vy
+        dx = share * (c * vx - s * vy) - state.vx
+        dy = share * (s * vx + c * vy) - state.vy
         step = hypot(dx, dy)
         if step > 0.0:
             ahead, aside = (c * dx + s * dy) / step, (c * dy - s * dx) / step

@@ -60,7 +60,7 @@ class Limits(Protocol):
     max_turn: float
     turn_acceleration: float
     angular_braking: float
-    reaction: float
+    trailing_time: float
     lag: float
     side_lag: float
     turn_lag: float
@@ -70,7 +70,6 @@ class Limits(Protocol):
     cross_ahead: float
     cross_aside: float
     touch_kept: float
-    touch_returned: float
 
 
 class Mover(Protocol):

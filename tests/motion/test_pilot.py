@@ -20,12 +20,14 @@ from robobt.motion.pilot import (
     travel_time,
     turn_rate,
 )
-from robobt.sim import preset
+from robobt.sim import SimWorld, preset
 from robobt.sim.realism import RealismSettings
 from robobt.skills import GoToPose
 from robobt.testing import Trial, alone, blue, eventually, robot
-from robobt.world import RobotCommand, RobotLimits, RobotState
+from robobt.world import DIVISION_B, Placement, RobotCommand, RobotLimits, RobotState
+from robobt.world.answer import compensated
 from robobt.world.geometry import Point, wrap_angle
+from robobt.world.prediction import PredictedWorld
 from tests.skills.fixed_world import moved
 
 PERIODS = (1 / 60, 0.025, 0.03)
@@ -274,3 +276,37 @@ def test_grsims_robot_keeps_its_heading_when_it_is_sent_elsewhere_on_its_way() -
         trial.run(0.4)
     # With jumps of its command it is 0.1 rad off.
     assert max(abs(frame.own[0].heading) for frame in trial.frames) < 0.05
+
+
+@settings(max_examples=25, deadline=None)
+@given(
+    dead_time=st.floats(0.0, 0.13),
+    lag=st.floats(0.0, 0.05),
+    gain=st.floats(0.6, 1.0),
+    side_gain=st.floats(0.6, 1.0),
+    target=st.tuples(st.floats(0.3, 2.5), st.floats(-2.0, 2.0)),
+    heading=st.floats(-pi, pi),
+)
+def test_a_robot_that_answers_late_and_in_part_stops_at_its_target_and_stays(
+    dead_time: float, lag: float, gain: float, side_gain: float, target: Point, heading: float
+) -> None:
+    limits = RobotLimits(
+        dead_time=dead_time, lag=lag, side_lag=lag, turn_lag=lag, gain=gain, side_gain=side_gain
+    )
+    me, period = blue(0), 1 / 60
+    world = PredictedWorld(SimWorld(DIVISION_B, {me: limits}, preset("default"), period), 0.0)
+    world.reset(Placement({me: (0.0, 0.0, 0.0)}, (-3.0, 2.0, 0.0, 0.0)), seed=0)
+    headings, past = [], 0.0
+    while world.observe().time < travel_time(hypot(*target), 0.0, limits) + 2.5:
+        frame = world.observe()
+        state, true = frame.own[0], world.truth().own[0]
+        along_way = (true.x * target[0] + true.y * target[1]) / hypot(*target)
+        past = max(past, along_way - hypot(*target))
+        world.act(compensated({me: drive(state, target, heading, limits, period)}, frame))
+        headings.append((world.truth().time, wrap_angle(true.heading - heading)))
+    end = world.truth().own[0]
+    assert past < 0.03
+    assert hypot(end.x - target[0], end.y - target[1]) < 0.01
+    assert end.speed < 0.05
+    # It does not swing about its heading either.
+    assert max(abs(off) for time, off in headings if time > headings[-1][0] - 1.0) < 0.03

@@ -113,6 +113,6 @@ def test_a_kick_on_contact_fires_before_the_ball_bounces(
     while not world.kicks:
         world.act({ME: RobotCommand(vx=drives, kick_speed=4.0)})
         assert world.time < 1.5, "it never fires"
-    seen = world.truth().ball
-    assert seen.vx == pytest.approx(4.0, abs=0.1)
-    assert seen.vy == pytest.approx(ball[3], abs=0.12 + 0.1 * abs(ball[3]))
+    seen, limits = world.truth().ball, preset(kind).limits
+    assert seen.vx == pytest.approx(4.0 - limits.kick_rebound * ball[2], abs=0.1)
+    assert seen.vy == pytest.approx(limits.touch_kept * ball[3], abs=0.12 + 0.1 * abs(ball[3]))

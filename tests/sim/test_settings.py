@@ -50,10 +50,16 @@ def test_a_name_is_a_preset() -> None:
     assert settings_from("grsim") == preset("grsim")
 
 
+@pytest.mark.parametrize("name", sorted(PRESETS))
+def test_robots_know_what_their_kicker_adds_to_a_ball_that_comes(name: str) -> None:
+    settings = PRESETS[name]
+    assert settings.limits.kick_rebound == settings.kicker.damping
+
+
 def test_a_mapping_changes_a_preset_and_keeps_the_rest() -> None:
     settings = settings_from({"preset": "grsim", "kicker": {"max_speed": 6.5}, "realism": "realistic"})
     assert settings.kicker.max_speed == 6.5
-    assert settings.limits.touch_returned == preset("grsim").limits.touch_returned
+    assert settings.kicker.damping == preset("grsim").kicker.damping
     assert settings.realism == REALISM["realistic"]
     assert settings.ball == preset("grsim").ball
 
@@ -63,10 +69,15 @@ def test_settings_survive_a_round_trip() -> None:
         assert SimSettings.model_validate_json(settings.model_dump_json()) == settings
 
 
-@pytest.mark.parametrize("name", ["", "grSim", "none"])
+@pytest.mark.parametrize("name", ["", "none"])
 def test_an_unknown_preset_lists_those_there_are(name: str) -> None:
     with pytest.raises(KeyError, match="default, erforce, grsim"):
         settings_from(name)
+
+
+def test_a_misspelt_preset_is_told_what_it_may_mean() -> None:
+    with pytest.raises(KeyError, match="did you mean grsim"):
+        settings_from("grSim")
 
 
 def test_an_unknown_realism_lists_those_there_are() -> None:
@@ -90,3 +101,16 @@ def test_a_wrong_setting_is_named(changes: dict[str, object], field: str) -> Non
     assert field in {".".join(map(str, error["loc"])) for error in caught.value.errors()} | {
         str(caught.value.errors()[0]["loc"][-1])
     }
+
+
+@pytest.mark.parametrize("name", ["real_2023", "real_2025", "raven_2", "sumatra"])
+def test_presets_of_real_robots_and_fields_have_one_touch_of_their_own(name: str) -> None:
+    settings = preset(name)
+    assert settings.limits.touch_kept < 1.0
+    assert settings.limits.kick_rebound == settings.kicker.damping
+
+
+def test_identified_robots_reach_a_part_of_their_commands() -> None:
+    limits = preset("raven_4").limits
+    assert (limits.dead_time, limits.gain, limits.side_gain) == (0.117, 0.94, 0.57)
+    assert not limits.answers_as_commanded

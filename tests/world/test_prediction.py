@@ -177,3 +177,40 @@ def test_a_ball_in_the_air_is_shown_as_high_as_it_is() -> None:
         assert (shown.z, shown.vz) == pytest.approx((real.z, real.vz), abs=1e-6)
         assert shown.x == pytest.approx(real.x, abs=1e-6)
     assert real.z > 0.4
+
+
+@pytest.mark.parametrize(
+    "answer",
+    [
+        {"dead_time": 0.09},
+        {"lag": 0.04, "side_lag": 0.05, "turn_lag": 0.03},
+        {"gain": 0.76, "side_gain": 0.64, "turn_gain": 0.9, "cross_ahead": -0.05},
+        {
+            "dead_time": 0.117,
+            "lag": 0.037,
+            "side_lag": 0.038,
+            "turn_lag": 0.03,
+            "gain": 0.94,
+            "side_gain": 0.57,
+        },
+    ],
+)
+@pytest.mark.parametrize("vision", [0.0, 0.035])
+def test_robots_are_shown_where_their_next_command_finds_them(
+    answer: dict[str, float], vision: float
+) -> None:
+    late = RealismSettings(vision_delay=vision)
+    settings = preset("rsim", realism=late)
+    limits = settings.limits.model_copy(update=answer)
+    sim = SimWorld(DIVISION_B, {BLUE: limits, YELLOW: limits}, settings, 0.01)
+    made = PredictedWorld(sim, vision)
+    made.reset(Placement({BLUE: (-1.0, 0.0, 0.5), YELLOW: (1.0, 1.0, -2.0)}, (3.0, 2.0, 0.0, 0.0)), 1)
+    shown = {}
+    for tick in range(90):
+        frame = made.observe()
+        shown[tick] = frame
+        then = tick - round(limits.dead_time / 0.01)
+        if then >= 0:
+            assert off(shown[then], made.truth()) < 0.012
+        going = RobotCommand(1.5, 0.6, 2.0) if tick < 40 else RobotCommand(-0.5, -0.8, -1.0)
+        made.act({BLUE: going, YELLOW: going})

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from math import hypot, inf, isfinite
+from statistics import fmean
 
 from robobt.league.estimate.ball_track import BallMotion, BallTrack, predict_ball
 from robobt.league.estimate.flight import FlightWatch
@@ -128,10 +129,13 @@ class VisionFilter:
         self._sent: dict[RobotId, SentCommands] = {}
 
     def sent(self, time: float, commands: Mapping[RobotId, RobotCommand]) -> None:
-        """Record commands that take effect at ``time``, for predictions."""
+        """Record commands that reach the robots at ``time``, for predictions.
+
+        They take effect after each robot's own dead time.
+        """
         for robot, command in commands.items():
             queue = self._sent.setdefault(robot, [])
-            queue.append(Sent(time, command))
+            queue.append(Sent(time + self._limits_of(robot).dead_time, command))
             # The last command before the horizon has to stay: it is still in force.
             while len(queue) > 1 and queue[1].since < time - _COMMAND_MEMORY:
                 queue.pop(0)
@@ -203,13 +207,22 @@ class VisionFilter:
         """Return how long the ball has not been detected; infinity if it never was [s]."""
         return inf if self._ball is None or self.captured is None else self.captured - self._ball_seen
 
-    def frame_at(self, time: float) -> Frame:
+    def frame_at(self, time: float, to_effect: bool = False) -> Frame:
         """Return the field at ``time``, predicted with the commands that were sent.
 
         A ball that was never seen is put in the centre.
+
+        Args:
+            time: on the vision's clock [s].
+            to_effect: whether to predict on to when a command that reaches a robot then moves it: each
+                commanded robot by its dead time, all else by the mean of these.
         """
-        motions = {robot: self._robot_at(robot, time) for robot in sorted(self._robots)}
-        ball = self._ball_at(time, motions)
+        dead = {robot: self._limits_of(robot).dead_time for robot in self._sent} if to_effect else {}
+        others = fmean(dead.values()) if dead else 0.0
+        motions = {
+            robot: self._robot_at(robot, time + dead.get(robot, others)) for robot in sorted(self._robots)
+        }
+        ball = self._ball_at(time + others, motions)
         teams: dict[Team, list[RobotState]] = {team: [] for team in Team}
         for robot, m in motions.items():
             low = self._ball is not None and ball.z < RECEIVED_HEIGHT
@@ -236,7 +249,7 @@ class VisionFilter:
         return count >= _OUTLIER_CONFIRMATIONS
 
     def _add_robot(self, robot: RobotId, detections: list[RobotDetection], time: float, camera: int) -> None:
-        limits = self._limits.get(robot, self.settings.limits)
+        limits = self._limits_of(robot)
         rivals = self._robot_rivals.get(robot)
         if rivals is None:
             rivals = self._robot_rivals[robot] = Rivals(_OUTLIER_CONFIRMATIONS, _ROBOT_GATE, limits.max_speed)
@@ -378,6 +391,9 @@ class VisionFilter:
             self.possession.update(track.motion, motions)
         else:
             self.possession.holds = []
+
+    def _limits_of(self, robot: RobotId) -> RobotLimits:
+        return self._limits.get(robot, self.settings.limits)
 
     def _robot_at(self, robot: RobotId, time: float) -> RobotMotion:
         track = self._robots[robot]

@@ -14,6 +14,7 @@ from typing import NamedTuple
 from robobt.league.estimate.kalman import Mismatch
 from robobt.league.estimate.offsets import MeanOffsets, OffsetCovariance
 from robobt.league.estimate.rivals import Rivals
+from robobt.world.answer import FollowedCommand, followed_until
 from robobt.world.command import RobotCommand
 from robobt.world.geometry import wrap_angle
 from robobt.world.limits import RobotLimits
@@ -230,23 +231,33 @@ def predict_robot(
     state = RobotMotion(motion.x, motion.y, motion.heading, motion.vx, motion.vy, motion.omega)
     now = start
     index = 0
+    followed = FollowedCommand()
+    if limits.longest_lag > 0.0:
+        followed = followed_until(commands, limits, start)
     while now < end - 1e-9:
         while index < len(commands) and commands[index].since <= now + 1e-9:
             index += 1
         until = min(end, commands[index].since) if index < len(commands) else end
         until = min(until, now + _TURNING_STEP)
-        _drive(state, commands[index - 1].command if index else None, limits, until - now)
+        command = None
+        if index:
+            followed.follow(commands[index - 1].command, limits, until - now)
+            command = followed.reached(limits)
+        _drive(state, command, limits, until - now)
         now = until
     return state
 
 
-def _drive(state: RobotMotion, command: RobotCommand | None, limits: RobotLimits, dt: float) -> None:
+def _drive(
+    state: RobotMotion, command: tuple[float, float, float] | None, limits: RobotLimits, dt: float
+) -> None:
     """Drive one step; a robot's wheels limit its acceleration to an ellipse in its own frame."""
     vx, vy, omega = state.vx, state.vy, state.omega
     if command is not None:
         c, s = cos(state.heading), sin(state.heading)
-        dx = c * command.vx - s * command.vy - vx
-        dy = s * command.vx + c * command.vy - vy
+        ahead, aside, turn = command
+        dx = c * ahead - s * aside - vx
+        dy = s * ahead + c * aside - vy
         size = hypot(dx, dy)
         if size > 0.0:
             ahead, aside = (c * dx + s * dy) / size, (c * dy - s * dx) / size
@@ -258,7 +269,7 @@ def _drive(state: RobotMotion, command: RobotCommand | None, limits: RobotLimits
             state.vx = vx + dx * share
             state.vy = vy + dy * share
         most = limits.turn_acceleration * dt
-        state.omega = omega + min(max(command.omega - omega, -most), most)
+        state.omega = omega + min(max(turn - omega, -most), most)
     state.x += (vx + state.vx) / 2.0 * dt
     state.y += (vy + state.vy) / 2.0 * dt
     state.heading = wrap_angle(state.heading + (omega + state.omega) / 2.0 * dt)

@@ -361,7 +361,7 @@ def _carry(
     x, y, there = waypoint_law(trip, (trip.x, trip.y), scene, movers, own, True)
     heading = steady(memory.course, time, direction((me.x, me.y), (x, y)), KEEP_WAY)
     pace = limits.max_speed, limits.acceleration
-    velocity = carrying_velocity(me, (x, y), there, heading, pace, scene.period + 2.0 * own.reaction)
+    velocity = carrying_velocity(me, (x, y), there, heading, pace, scene.period + 2.0 * own.trailing_time)
     _handle(team, velocity, heading, limits, True, command)
 
 
@@ -410,7 +410,7 @@ def _get(team: _Team, movers: Sequence[Mover], memory: _ChallengerMemory, comman
     memory.at_ball = 1.0 if at_ball else 0.0
     if at_ball:
         bearing, vx, vy = creeping(me, ball, _PICK_UP_SPEED)
-        _handle(team, (vx, vy), bearing, own, own.reaction > 0.0, command)
+        _handle(team, (vx, vy), bearing, own, own.trailing_time > 0.0, command)
         return
     pace = given.max_speed, given.acceleration, given.braking
     meeting = meeting_law(me, ball, pace, SLIDE_DECELERATION, ROLL_DECELERATION)

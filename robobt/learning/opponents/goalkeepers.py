@@ -297,7 +297,7 @@ def _decide(
                 )
                 command.dribbler = 1.0
             facing = direction((trip.me.x, trip.me.y), (ball.x, ball.y))
-            gentle = slowed or own.reaction > 0.0
+            gentle = slowed or own.trailing_time > 0.0
             order = drive_law(trip.me, place, facing, final_speed, own, given, gentle, scene.period)
         elif case in (Case.COVER, Case.HOME):
             if case == Case.HOME:

@@ -107,7 +107,7 @@ class DribbleTo(Skill):
         point, speed_there = next_waypoint(frame, me, target)
         heading = steady(self._course, frame.time, direction(me.position, point), self.keep)
         pace = limits.max_speed, limits.acceleration
-        stands = frame.period + 2.0 * me.limits.reaction
+        stands = frame.period + 2.0 * me.limits.trailing_time
         vx, vy = carrying_velocity(me, point, speed_there, heading, pace, stands)
         omega = turn_rate(me, heading, limits, frame.period)
         self.store.command = command(me, vx, vy, omega, limits, frame.period)

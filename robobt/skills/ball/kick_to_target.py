@@ -6,7 +6,7 @@ from dataclasses import dataclass, field, replace
 from math import atan2, cos, radians, sin
 from typing import Literal
 
-from robobt.motion.dribbling import dribbling_limits, turn_with_ball
+from robobt.motion.dribbling import dribbling_limits, sideways_after_kick, turn_with_ball
 from robobt.motion.path_planner import TARGETS, allowed_target, next_waypoint, travel
 from robobt.motion.pilot import ROBOBULLS_LIMITS, roughly
 from robobt.motion.run_up import RUN_UP_SPEED, run_up
@@ -82,8 +82,8 @@ class KickToTarget(DrivingSkill):
     when the ball has got away. A pass is noted in the team's store as its kick
     goes out.
 
-    The ball leaves along the heading and keeps its sideways velocity; the robot corrects its aim for that,
-    and may kick while it still turns.
+    The ball leaves along the heading and keeps the share ``limits.touch_kept`` of its sideways velocity; the
+    robot corrects its aim for that, and may kick while it still turns.
 
     A chip flies over robots and first touches down at the target, or as close to it as the speed limit of the
     rules allows; from there it hops and rolls on.
@@ -269,7 +269,7 @@ class KickToTarget(DrivingSkill):
         if gap > _NEAR_BALL_DISTANCE or (order.pass_ is not None and order.pass_.wait > 0.0):
             return False
         c, s = cos(me.heading), sin(me.heading)
-        sideways, ahead = c * ball.vy - s * ball.vx, c * ball.vx + s * ball.vy
+        sideways, ahead = sideways_after_kick(me, ball), c * ball.vx + s * ball.vy
         leaving = me.heading + atan2(sideways, order.along)
         off = abs(wrap_angle(direction(ball.position, order.target) - leaving))
         # At a restart the first touch is the kick, whatever its aim; a second touch would be a foul.
@@ -278,7 +278,7 @@ class KickToTarget(DrivingSkill):
             return False
         # A ball that rolls towards the robot leaves faster than the kick alone, if the kicker allows it.
         self.store.command.kick_speed = max(
-            _LEAST_KICK, order.speed + me.limits.touch_returned * min(ahead, 0.0)
+            _LEAST_KICK, order.speed + me.limits.kick_rebound * min(ahead, 0.0)
         )
         self.store.command.kick_angle = order.angle
         self.store.command.kick_trigger = KickTrigger.ON_CONTACT

@@ -10,7 +10,7 @@ from typing import Annotated, TypeAlias
 from pydantic import Field
 
 from robobt.config.validation import Settings
-from robobt.motion.dribbling import dribbling_limits, turn_with_ball
+from robobt.motion.dribbling import dribbling_limits, sideways_after_kick, turn_with_ball
 from robobt.motion.path_planner import TARGETS
 from robobt.skills.ball.learned_control import LearnedControl, PolicyError, find_policy, policies_by_name
 from robobt.skills.base import Skill, skill
@@ -113,7 +113,7 @@ class GeometricShot(Settings):
         store.draw.line(TARGETS, ball.position, aim)
         heading = direction(ball.position, aim)
         decided = turn_with_ball(me, heading, dribbling_limits(max_turn=self.max_turn), frame.period)
-        sideways = cos(me.heading) * ball.vy - sin(me.heading) * ball.vx
+        sideways = sideways_after_kick(me, ball)
         if abs(wrap_angle(heading - me.heading - atan2(sideways, self.kick_speed))) <= tolerance:
             decided.kick_speed = self.kick_speed
             decided.kick_trigger = KickTrigger.NOW

@@ -168,24 +168,25 @@ def aim_of(
     incoming_y: float,
     shot_speed: float,
     fastest: float,
+    touch_kept: float,
 ) -> float:
     """Return the heading [rad] from which a ball kicked at once leaves along (heading_x, heading_y).
 
-    A kick sends the ball along the heading at the speed of :func:`redirect_kick` and keeps its sideways
-    speed. The heading compensates for the sideways speed of a ball that comes in with (incoming_x,
-    incoming_y) [m/s].
+    A kick sends the ball along the heading at the speed of :func:`redirect_kick` and keeps the share
+    ``touch_kept`` of its sideways speed, for which the heading compensates, of a ball that comes in with
+    (incoming_x, incoming_y) [m/s].
     """
     wanted = atan2(heading_y, heading_x)
     heading = wanted
     for _ in range(20):
-        sideways = cos(heading) * incoming_y - sin(heading) * incoming_x
+        sideways = touch_kept * (cos(heading) * incoming_y - sin(heading) * incoming_x)
         heading = wanted - atan2(sideways, redirect_kick(sideways, shot_speed, fastest))
     return heading
 
 
 @compiled
 def redirect_kick(sideways: float, shot_speed: float, fastest: float) -> float:
-    """Return the kick speed of a shot with one touch, given the ball's speed across the heading [m/s]."""
+    """Return the kick speed of a shot with one touch, given the speed across the heading it keeps [m/s]."""
     return min(shot_speed, sqrt(max(1.0, fastest * fastest - sideways * sideways)))
 
 

@@ -117,8 +117,10 @@ class ReceivePass(Skill):
             v = max(0.0, speed - frame.ball_model.roll_deceleration * min(time, 0.3))
             c, s = cos(me.heading), sin(me.heading)
             order.kick_speed = (
-                redirect_kick((c * uy - s * ux) * v, tactics.shot_speed, tactics.fastest)
-                + me.limits.touch_returned * (c * ux + s * uy) * v
+                redirect_kick(
+                    me.limits.touch_kept * (c * uy - s * ux) * v, tactics.shot_speed, tactics.fastest
+                )
+                + me.limits.kick_rebound * (c * ux + s * uy) * v
             )
             order.kick_trigger = KickTrigger.ON_CONTACT
             self._armed, self._armed_at = order.kick_speed, frame.time
@@ -169,4 +171,12 @@ class ReceivePass(Skill):
         store.shot = Shot((field.half_length, goal_y), max(0.01, half_angle), chance)
         v = max(0.3, speed - 0.5 * time)
         to_goal = field.half_length - x
-        return aim_of(to_goal, goal_y - y, ux * v, uy * v, tactics.shot_speed, tactics.fastest)
+        return aim_of(
+            to_goal,
+            goal_y - y,
+            ux * v,
+            uy * v,
+            tactics.shot_speed,
+            tactics.fastest,
+            self.me.limits.touch_kept,
+        )
