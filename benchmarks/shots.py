@@ -13,9 +13,9 @@ import torch
 import typer
 from numpy.typing import NDArray
 
+from paper.predictors import paper_features
 from robobt.cli.common import Json, Progress, print_json, say
 from robobt.shots.data.inputs import goals, shot_inputs
-from robobt.shots.predict.features import paper_features
 from robobt.shots.predict.network_classifier import NetworkClassifier
 from robobt.shots.predict.shot_sets import load_shot_sets
 from robobt.shots.predict.validation import FOLDS, stratified_folds

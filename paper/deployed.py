@@ -7,25 +7,20 @@ from collections import Counter
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from math import pi
+from os.path import relpath
 from pathlib import Path
 from statistics import fmean
 from typing import TypedDict
 
-from robobt.match.loop import WorldFactory
-from robobt.match.results.results import MatchResult, Rate
-from robobt.match.runner import run_trials_in
-from robobt.match.scenario.robots import RobotSetup
-from robobt.match.scenario.scenario import Scenario, load_scenario
+from robobt.match import MatchResult, Rate, RobotSetup, Scenario, WorldFactory, load_scenario, run_trials_in
 from robobt.statistics import mcnemar
 from robobt.worlds import sim_world
 
 ATTACKERS: dict[str, dict[str, object]] = {
     "attack_main": {"play": "attack_main"},
     "attack_main as published": {
-        "play": "attack_main",
-        "kick": "robobulls",
+        "play": "robobulls_attack_main",
         "rater": {"name": "segment_clearance", "tolerance": 0.1965},
-        "steady": 0.9,
     },
     "attack_main, wide": {
         "play": "attack_main",
@@ -48,8 +43,8 @@ PAPER: dict[str, dict[str, tuple[int, int]]] = {
 }
 """The paper's goals and shots, by the goalkeeper's speed and the play."""
 
-GOALKEEPERS = ("default", "robobulls")
-"""Styles of the play ``goalkeeper``: this project's, and the paper's with its own pilot."""
+GOALKEEPERS = {"default": "goalkeeper", "robobulls": "robobulls_goalkeeper"}
+"""The goalkeepers' plays by name: this project's, and the paper's with its own pilot."""
 
 SPEEDS = ("half", "full")
 STARTS = ("own half", "2.5 to 4.5 m")
@@ -61,6 +56,7 @@ SEED = 2026
 _SHOOTER, _GOAL = "blue 0", "goal_blue"
 _WALL = (-3.2, 0.4)
 _CLOCK = 10.0
+_ROBOBULLS = Path(__file__).with_name("robobulls.py")
 
 
 @dataclass(frozen=True, slots=True)
@@ -220,7 +216,7 @@ def _file_name(situation: Situation, attacker: str) -> str:
 def deployed_scenario(situation: Situation, attacker: str) -> Scenario:
     """Return the shipped scenario with another attacker, goalkeeper, start and defenders."""
     scenario = load_scenario(f"deployed_{situation.speed}")
-    scenario = scenario.with_robot("yellow 0", style=situation.goalkeeper)
+    scenario = scenario.with_robot("yellow 0", play=_place(GOALKEEPERS[situation.goalkeeper]))
     if situation.starts == STARTS[1]:
         start = {"around": "their goal", "distance": (2.5, 4.5), "bearing": (0.65 * pi, 1.35 * pi)}
         scenario = scenario.with_robot(
@@ -228,7 +224,13 @@ def deployed_scenario(situation: Situation, attacker: str) -> Scenario:
         )
     if situation.defenders:
         scenario = _defended(scenario, situation.defenders)
-    return scenario.with_robot(_SHOOTER, **ATTACKERS[attacker])
+    changes = ATTACKERS[attacker]
+    return scenario.with_robot(_SHOOTER, **{**changes, "play": _place(str(changes["play"]))})
+
+
+def _place(play: str) -> str:
+    """Return a play's name, behind its file where the file is not in robobt."""
+    return f"{relpath(_ROBOBULLS)}:{play}" if play.startswith("robobulls_") else play
 
 
 def _defended(scenario: Scenario, count: int) -> Scenario:

@@ -9,12 +9,15 @@ from numpy.typing import NDArray
 from scipy.stats import norm, qmc
 
 from paper.goalkeeper_race import GOAL_LINE, goal_chances
-from robobt.shots.keepers.population import DIMENSIONS, Population
-from robobt.shots.predict.validation import Fold
-from robobt.world.geometry import FloatArray
+from paper.validation import Fold
+from robobt.shots import Population
+from robobt.world import FloatArray
 
 DRAWS = 32
 """Goalkeepers that each shot meets."""
+
+_DIMENSIONS = 6
+"""Random numbers that one goalkeeper's traits take."""
 
 START = Population(
     max_speed=1.125,
@@ -53,7 +56,7 @@ def chances(population: Population, shots: FloatArray, draws: int = DRAWS) -> Fl
     ``shots`` are :func:`~paper.goalkeeper_race.race_inputs`, ``draws`` is a power of 2; the same
     goalkeepers are drawn each time.
     """
-    normal = norm.ppf(qmc.Sobol(DIMENSIONS, seed=1).random(draws))
+    normal = norm.ppf(qmc.Sobol(_DIMENSIONS, seed=1).random(draws))
     return goal_chances(shots, population.traits(normal), population.offset, population.kick_follows)
 
 

@@ -8,18 +8,17 @@ ball's way, too far out on a shot to the far post and too far in on one to the n
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from math import atan2, cos, erf, sin, sqrt
-from typing import NamedTuple
+from typing import NamedTuple, TypeVar, cast
 
 import numpy as np
 import pyarrow as pa
+from numba import njit
 
-from robobt.shots.keepers.population import FITTED_TRAITS, Traits
-from robobt.sim.settings import PRESETS
-from robobt.world.compiled import compiled, record_dtype
-from robobt.world.field import DIVISION_B
-from robobt.world.geometry import FloatArray
-from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS
+from robobt.shots import Traits
+from robobt.sim import PRESETS
+from robobt.world import BALL_RADIUS, DIVISION_B, ROBOT_RADIUS, FloatArray
 
 _BALL = PRESETS["robobulls"].ball
 SLIDING, SWITCH, ROLLING = _BALL.slide_deceleration, _BALL.switch_share, _BALL.roll_deceleration
@@ -59,8 +58,18 @@ class Shot(NamedTuple):
     bearing: float
 
 
-SHOT = record_dtype(Shot)
-"""The record of a :class:`Shot`."""
+def _record(kind: type[Shot] | type[Traits]) -> np.dtype[np.record]:
+    return cast("np.dtype[np.record]", np.dtype((np.record, [(name, "f8") for name in kind._fields])))
+
+
+SHOT, TRAITS = _record(Shot), _record(Traits)
+"""The records of a :class:`Shot` and of a goalkeeper's traits."""
+
+_Function = TypeVar("_Function", bound=Callable[..., object])
+
+
+def _compiled(function: _Function) -> _Function:
+    return cast(_Function, njit(cache=True)(function))
 
 
 def race_inputs(table: pa.Table) -> FloatArray:
@@ -86,7 +95,7 @@ def race_inputs(table: pa.Table) -> FloatArray:
     )
 
 
-@compiled
+@_compiled
 def _nearest(shot: Shot, traits: Traits, c: float, s: float) -> float:
     """Return how near the ball, kicked along (c, s), comes to the goalkeeper before the goal line [m]."""
     px, py, kx, ky, vx, vy = shot.x, shot.y, shot.keeper_x, shot.keeper_y, shot.keeper_vx, shot.keeper_vy
@@ -122,17 +131,17 @@ def _nearest(shot: Shot, traits: Traits, c: float, s: float) -> float:
     return nearest
 
 
-@compiled
+@_compiled
 def goal_chances(shots_: FloatArray, traits_: FloatArray, offset: float, follows: float) -> FloatArray:
     """Compute the probability of a goal of every shot, (n,), over a sample of goalkeepers.
 
     Args:
         shots_: (n, 8) of :func:`race_inputs`.
-        traits_: (m, 7) :data:`~robobt.shots.keepers.population.FITTED_TRAITS`; their offset is left out.
+        traits_: (m, 7) :data:`TRAITS`; their offset is left out.
         offset: standard deviation of the offset, over which the chance is worked out exactly [m].
         follows: share of the ball's bearing off the aim by which the kick goes astray.
     """
-    shots, traits = shots_.view(SHOT)[:, 0], traits_.view(FITTED_TRAITS)[:, 0]
+    shots, traits = shots_.view(SHOT)[:, 0], traits_.view(TRAITS)[:, 0]
     chances = np.zeros(len(shots))
     blur = sqrt(2.0) * max(offset, LEAST_OFFSET)
     for i, shot in enumerate(shots):

@@ -13,15 +13,18 @@ from numpy.typing import NDArray
 
 from paper.goalkeeper_fit import fit_population, validate_population
 from paper.goalkeeper_race import race_inputs
-from robobt.models.card import Measured
-from robobt.shots.data.files import read_shots
-from robobt.shots.data.inputs import goals
-from robobt.shots.data.problems import ShotDataError
-from robobt.shots.keepers.population import Population
-from robobt.shots.predict.score import measured
-from robobt.shots.predict.shot_sets import load_shot_sets
-from robobt.shots.predict.validation import FOLDS, stratified_folds
-from robobt.world.geometry import FloatArray
+from robobt.models import Measured
+from robobt.shots import (
+    FOLDS,
+    Population,
+    ShotDataError,
+    goals,
+    load_shot_sets,
+    measured,
+    read_shots,
+    stratified_folds,
+)
+from robobt.world import FloatArray
 
 DISTANCES = (0.0, 2.6, 3.0, 3.4, 3.8, 20.0)
 """Between which distances from shooter to target goals are counted [m]."""

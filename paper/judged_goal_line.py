@@ -7,14 +7,10 @@ from math import cos, sin
 from pathlib import Path
 
 from paper.deployed import Situation, deployed_scenario
-from robobt.config.figures import new_figure, save_figure
-from robobt.match.loop import MatchLoop, WorldFactory
-from robobt.match.runner import trial_seed
-from robobt.skills.aim.raters.expected_goal import ExpectedGoal
-from robobt.skills.aim.raters.goal_line import goal_candidates
-from robobt.skills.aim.raters.nn_filtered import NNFiltered
-from robobt.world.geometry import FloatArray
-from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS, Frame, RobotState
+from robobt.config import new_figure, save_figure
+from robobt.match import MatchLoop, WorldFactory, trial_seed
+from robobt.skills import ExpectedGoal, NNFiltered, goal_candidates
+from robobt.world import BALL_RADIUS, ROBOT_RADIUS, FloatArray, Frame, RobotState
 from robobt.worlds import sim_world
 
 

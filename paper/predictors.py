@@ -15,18 +15,19 @@ from sklearn.linear_model import LogisticRegression
 from sklearn.pipeline import Pipeline, make_pipeline
 from sklearn.preprocessing import FunctionTransformer, StandardScaler
 
-from robobt.shots.predict import best_predictor
-from robobt.shots.predict.batched import Recipe
-from robobt.shots.predict.features import pair_features, paper_features
-from robobt.shots.predict.network_classifier import NetworkClassifier
-from robobt.shots.predict.networks import Layer
-from robobt.world.geometry import FloatArray
+from robobt.shots import Layer, NetworkClassifier, Recipe, best_predictor, pair_features
+from robobt.world import FloatArray
 
 KIKS = (Layer(True, 8, "relu"), Layer(True, 8, "relu"), Layer(True, 1, "linear"))
 """Three dense layers with batch normalisation (Naito et al.); their sizes are not published."""
 
 KICK_SPEED = 7.5
 """Speed of the recorded shots [m/s]: a constant input where the ball's speed is not recorded."""
+
+
+def paper_features(scenes: ArrayLike) -> FloatArray:
+    """Return Eq. 4 in the author's units: rad and mm."""
+    return pair_features(scenes) * [1.0, 1e3, 1e3, 1e3, 1e3]
 
 
 def table_one() -> Pipeline:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from robobt.config.figures import new_figure, save_figure
+from robobt.config import new_figure, save_figure
 from robobt.statistics import ReliabilityBin
 
 

@@ -9,11 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from paper.predictors import logistic, logistic_standardised, table_one
-from robobt.shots.data.inputs import goals, shot_inputs
-from robobt.shots.predict.shot_sets import ShotSets
-from robobt.shots.predict.validation import FOLDS, accuracies, predict_folds, stratified_folds
+from paper.validation import accuracies, predict_folds
+from robobt.shots import FOLDS, ShotSets, goals, shot_inputs, stratified_folds
 from robobt.statistics import PairedTest, corrected_resampled_t_test, mean_interval
-from robobt.world.geometry import FloatArray
+from robobt.world import FloatArray
 
 REPEATS = 10
 HOLD_OUTS = (0.33, 0.25)

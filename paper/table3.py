@@ -10,15 +10,19 @@ import torch
 from numpy.typing import NDArray
 from sklearn.pipeline import Pipeline
 
-from paper.predictors import PREDICTORS
-from robobt.shots.data.inputs import goals, shot_inputs
-from robobt.shots.data.problems import ShotDataError
-from robobt.shots.predict.features import paper_features
-from robobt.shots.predict.network_classifier import NetworkClassifier
-from robobt.shots.predict.shot_sets import ShotSets
-from robobt.shots.predict.validation import judge, judge_repeats, predict_folds, stratified_folds
+from paper.predictors import PREDICTORS, paper_features
+from paper.validation import judge_repeats, predict_folds
+from robobt.shots import (
+    NetworkClassifier,
+    ShotDataError,
+    ShotSets,
+    goals,
+    judge,
+    shot_inputs,
+    stratified_folds,
+)
 from robobt.statistics import ReliabilityBin, mcnemar, mean_interval, reliability, wilson_interval
-from robobt.world.geometry import FloatArray
+from robobt.world import FloatArray
 
 PAPER_CONFUSION = [[102, 20], [10, 69]]
 """A row for failures and one for successes; columns: predicted as failure, as success."""

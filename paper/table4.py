@@ -21,16 +21,15 @@ from paper.table4_rows import (
 )
 from paper.table4_runs import Attempt, Series, Show, play_series
 from paper.table4_starts import LIMITS, Starts, drawn_starts, table4_scenario
-from robobt.match.loop import WorldFactory
-from robobt.match.results.results import Rate
+from robobt.match import Rate, WorldFactory
 from robobt.statistics import mean_interval
 from robobt.worlds import sim_world
 
 TRIALS = ("1", "2")
 """The ball in the centre, and at (0, 1.5) m."""
 
-COMBINATIONS: dict[str, dict[str, str | None]] = {
-    "robobulls": {"style": "robobulls"},
+COMBINATIONS: dict[str, dict[str, str | None] | None] = {
+    "robobulls": None,
     "geometric, kick": {"policy": "geometric", "shoot": "kick_to_target"},
     "geometric, kick, quick": {"policy": "geometric", "shoot": "kick_to_target", "pickup_speed": None},
     "geometric, shoot": {"policy": "geometric", "shoot": "geometric"},
@@ -39,7 +38,7 @@ COMBINATIONS: dict[str, dict[str, str | None]] = {
     "3-step ddpg, shoot": {"policy": "ddpg", "shoot": "geometric", "pickup_speed": None},
     "3-step ddpg, d4pg+td3": {"policy": "ddpg", "shoot": "ddpg", "pickup_speed": None},
 }
-"""Parameters of the play go_to_ball_and_shoot, by who approaches and who shoots.
+"""Parameters of the play go_to_ball_and_shoot, by who approaches and who shoots; None for RoboBulls' play.
 
 Hand-written shots are KickToTarget ("kick") and the geometric Shoot ("shoot").
 
@@ -114,7 +113,7 @@ def table4(
     series = []
     for row in rows:
         # A person needs no play, but the rest of the scenario.
-        params = COMBINATIONS.get(row.combination, COMBINATIONS["robobulls"])
+        params = COMBINATIONS.get(row.combination)
         scenario = table4_scenario(row.trial, params, preset, realism, LIMITS[row.limits])
         first = scenario.seed if seed is None else seed
         drawn = drawn_starts(scenario) if conditions.starts == "drawn" else scenario

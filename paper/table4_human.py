@@ -5,10 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from paper.table4_starts import SHOOTER
-from robobt.live.session import LOOK, Live
-from robobt.match.loop import MatchLoop
-from robobt.world.game import Team
-from robobt.world.state import RobotId
+from robobt.live import LOOK, Live
+from robobt.match import MatchLoop
+from robobt.world import RobotId, Team
 
 COUNTDOWN = 3.0
 """Before each run, in which nothing moves [s]."""

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Literal
 
 from paper.table4_rows import Table4
-from robobt.config.figures import new_figure, save_figure
+from robobt.config import new_figure, save_figure
 
 _PARTS: tuple[tuple[Literal["approach", "pick_up", "shoot"], str, str], ...] = (
     ("approach", "approach", "C0"),

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TypedDict, cast
 
-from robobt.match.results.results import Rate
+from robobt.match import Rate
 
 
 class PaperRow(TypedDict):

@@ -11,15 +11,11 @@ from typing import NamedTuple
 from pydantic import ConfigDict
 
 from paper.table4_starts import SHOOTER, gap, minimum_times
-from robobt.config.errors import RobobtError
-from robobt.engines.run import run_tasks
-from robobt.engines.work import Work
-from robobt.match.loop import MatchLoop, WorldFactory
-from robobt.match.results.file import TrialsFile
-from robobt.match.runner import RunError, trial_seed
-from robobt.match.scenario.scenario import Scenario
-from robobt.sim.settings import settings_from
-from robobt.skills.ball.go_to_ball import HANDOVER_DISTANCE
+from robobt import RobobtError
+from robobt.engines import Work, run_tasks
+from robobt.match import MatchLoop, RunError, Scenario, TrialsFile, WorldFactory, trial_seed
+from robobt.sim import settings_from
+from robobt.skills import HANDOVER_DISTANCE
 from robobt.worlds import sim_world
 
 Show = Callable[[MatchLoop], Callable[[], bool]]

@@ -4,17 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from math import atan2, cos, hypot, radians, sin
+from pathlib import Path
 from typing import Literal
 
 import numpy as np
 
 from paper.table4_rows import Minimum
-from robobt.learning.envs.episodes import straight_line_time
-from robobt.match.scenario.scenario import Scenario, load_scenario
-from robobt.match.scenario.starts import Box
-from robobt.sim.settings import PRESETS, SimSettings
-from robobt.world.geometry import Point
-from robobt.world.state import BALL_RADIUS, Frame
+from robobt.learning import straight_line_time
+from robobt.match import Box, Scenario, load_scenario
+from robobt.sim import PRESETS, SimSettings
+from robobt.world import BALL_RADIUS, Frame, Point
+
+SCENARIOS = Path(__file__).parent / "scenarios"
 
 SHOOTER = "blue 0"
 """The robot that is measured."""
@@ -47,20 +48,23 @@ _FACINGS = 101
 
 def table4_scenario(
     trial: str,
-    params: Mapping[str, object],
+    params: Mapping[str, object] | None,
     preset: str = "robobulls",
     realism: str | None = None,
     limits: Mapping[str, float] | None = None,
 ) -> Scenario:
-    """Return a trial's bundled scenario with other parameters, simulator, noise or limits of the robot."""
-    scenario = load_scenario(f"table4_trial{trial}")
+    """Return a trial with another simulator, noise or limits of the robot.
+
+    It plays go_to_ball_and_shoot with these parameters, or RoboBulls' play where they are None.
+    """
+    scenario = load_scenario(SCENARIOS / f"table4_trial{trial}.yaml")
     simulator = {**scenario.simulator, "preset": preset}
     if realism is not None:
         simulator["realism"] = realism
     changes: dict[str, object] = {"limits": dict(limits)} if limits else {}
-    return scenario.model_copy(update={"simulator": simulator}).with_robot(
-        SHOOTER, params=dict(params), **changes
-    )
+    if params is not None:
+        changes |= {"play": "go_to_ball_and_shoot", "params": dict(params)}
+    return scenario.model_copy(update={"simulator": simulator}).with_robot(SHOOTER, **changes)
 
 
 def drawn_starts(scenario: Scenario) -> Scenario:

@@ -108,13 +108,14 @@ def test_what_its_python_imports_is_there(page: str) -> None:
 
 
 def shown_to_users() -> dict[str, str]:
-    """The code of the examples and of the blocks in README and pages, by where it stands."""
+    """The code of the examples, of the paper's tables, and of README and pages, by where it stands."""
     found = {
         f"{page}, block {number}": block
         for page in PAGES
         for number, block in enumerate(blocks(page, "python"), 1)
     }
-    return found | {path.name: path.read_text() for path in sorted((ROOT / "examples").glob("*.py"))}
+    files = [*sorted((ROOT / "examples").glob("*.py")), *sorted((ROOT / "paper").rglob("*.py"))]
+    return found | {str(path.relative_to(ROOT)): path.read_text() for path in files}
 
 
 def imported(code: str) -> set[str]:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from robobt.cli.common import (
+from robobt.cli import (
     MAX_SEED,
     Json,
     Progress,
@@ -16,13 +16,13 @@ from robobt.cli.common import (
     Workers,
     console,
     cores,
+    make_folders,
     one_of,
     print_json,
     say,
     table,
     world_of,
 )
-from robobt.cli.outputs import make_folders
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

@@ -7,8 +7,7 @@ from typing import Annotated
 
 import typer
 
-from robobt.cli.common import MAX_SEED, Json, Progress, print_json, say
-from robobt.cli.outputs import make_folders
+from robobt.cli import MAX_SEED, Json, Progress, make_folders, print_json, say
 
 
 def goalkeepers(
@@ -35,8 +34,7 @@ def goalkeepers(
     from dataclasses import asdict
 
     from paper.goalkeepers import explain, shots_to_fit
-    from robobt.shots.data.problems import ShotDataError
-    from robobt.shots.predict.validation import FOLDS
+    from robobt.shots import FOLDS, ShotDataError
 
     if out is not None and out.exists() and not force:
         raise ShotDataError(f"{out}: is there already; give another --out, or --force")

@@ -8,9 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from robobt.cli.common import Json, Progress, console, print_json, say, table
-from robobt.cli.outputs import make_folders
-from robobt.config.errors import unknown_name
+from robobt.cli import Json, Progress, console, make_folders, one_of, print_json, say, table
 
 if TYPE_CHECKING:
     from paper.table3 import Table3
@@ -49,7 +47,7 @@ def table2(
 
     from paper.table2 import HOLD_OUTS
     from paper.table2 import table2 as run
-    from robobt.shots.predict.shot_sets import load_shot_sets
+    from robobt.shots import load_shot_sets
 
     torch.set_num_threads(1)
     sets = load_shot_sets(data)
@@ -118,12 +116,10 @@ def table3(
     from paper.predictors import PREDICTORS
     from paper.reliability_diagram import draw_reliability
     from paper.table3 import table3 as run
-    from robobt.shots.predict.shot_sets import load_shot_sets
+    from robobt.shots import load_shot_sets
 
     torch.set_num_threads(1)
-    for name in model or ():
-        if name not in PREDICTORS:
-            raise typer.BadParameter(f"no predictor is called {name!r}; {unknown_name(name, PREDICTORS)}")
+    one_of(model or [], PREDICTORS, "--model")
     make_folders({"--picture": picture})
     sets = load_shot_sets(data)
     models = model or list(PREDICTORS)

@@ -9,22 +9,22 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from robobt.cli.common import (
+from robobt.cli import (
     Json,
+    Page,
     Progress,
     Seed,
     Where,
     Workers,
     console,
     cores,
+    make_folders,
     one_of,
     print_json,
     say,
     table,
     world_of,
 )
-from robobt.cli.option_groups.page import Page
-from robobt.cli.outputs import make_folders
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -147,9 +147,8 @@ def table4(
     from paper.table4 import table4 as run
     from paper.table4_picture import draw_table4
     from paper.table4_starts import LIMITS
-    from robobt.engines.run import engine
-    from robobt.sim.realism import REALISM
-    from robobt.sim.settings import PRESETS
+    from robobt.engines import engine
+    from robobt.sim import PRESETS, REALISM
 
     one_of([setting.preset], PRESETS, "--preset")
     one_of([] if setting.realism is None else [setting.realism], REALISM, "--realism")
@@ -166,7 +165,7 @@ def table4(
         show = None
         if human:
             from paper.table4_human import HumanRuns
-            from robobt.live.session import Live
+            from robobt.live import Live
 
             show = HumanRuns(Live(stack.enter_context(page.server())))
         factory = stack.enter_context(world_of(processes.world))

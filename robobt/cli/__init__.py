@@ -16,10 +16,25 @@ from typing import Annotated
 import typer
 from rich.markup import escape
 
-from robobt.cli.common import console, errors, one_line_errors
+from robobt.cli.common import MAX_SEED as MAX_SEED
+from robobt.cli.common import Json as Json
+from robobt.cli.common import Progress as Progress
+from robobt.cli.common import Seed as Seed
+from robobt.cli.common import Where as Where
+from robobt.cli.common import Workers as Workers
+from robobt.cli.common import console as console
+from robobt.cli.common import cores as cores
+from robobt.cli.common import errors, one_line_errors
+from robobt.cli.common import one_of as one_of
+from robobt.cli.common import print_json as print_json
+from robobt.cli.common import say as say
+from robobt.cli.common import table as table
+from robobt.cli.common import world_of as world_of
 from robobt.cli.moved import what_became
+from robobt.cli.option_groups.page import Page as Page
 from robobt.cli.option_groups.spread import spread
 from robobt.cli.options import option
+from robobt.cli.outputs import make_folders as make_folders
 from robobt.config.telling import tell_warnings
 from robobt.signals import leave_after_signal
 

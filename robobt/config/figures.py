@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 def new_figure(width: float, height: float) -> Figure:
-    """Return an empty figure of a size in inches, for any machine: it needs no display."""
+    """Return an empty figure, ``width`` by ``height`` inches, for any machine: it needs no display."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
@@ -22,7 +22,7 @@ def new_figure(width: float, height: float) -> Figure:
 
 
 def save_figure(figure: Figure, path: Path) -> None:
-    """Write a figure; the name's ending decides the format (.png, .svg, .pdf)."""
+    """Write a figure to ``path``, whose ending decides the format (.png, .svg, .pdf)."""
     path.parent.mkdir(parents=True, exist_ok=True)
     with replacing(path) as draft:
         figure.savefig(draft, dpi=120)

@@ -36,7 +36,7 @@ class Work(Generic[TaskT, ReportT, ResultT]):
     passed: tuple[type[Exception], ...] = ()
 
     def attempt(self, task: TaskT, report: Callable[[ReportT], None]) -> ResultT:
-        """Do one task in this process."""
+        """Do one task in this process, which may ``report`` on its progress; return its result."""
         try:
             return self.do(task, report)
         except (self.error, *self.passed):

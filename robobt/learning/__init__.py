@@ -29,6 +29,7 @@ _HOMES = {
     "run_starts": "envs",
     "start_parts": "envs",
     "straight_drive": "envs.scripted",
+    "straight_line_time": "envs",
 }
 
 if TYPE_CHECKING:
@@ -38,6 +39,7 @@ if TYPE_CHECKING:
     from robobt.learning.envs import Tick as Tick
     from robobt.learning.envs import run_starts as run_starts
     from robobt.learning.envs import start_parts as start_parts
+    from robobt.learning.envs import straight_line_time as straight_line_time
     from robobt.learning.envs.scripted import straight_drive as straight_drive
     from robobt.learning.envs.soccer.parallel import SoccerParallelEnv as SoccerParallelEnv
     from robobt.learning.envs.stable_baselines3 import ArenasVecEnv as ArenasVecEnv

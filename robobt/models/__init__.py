@@ -6,6 +6,7 @@ from robobt.config.lazy import lazily
 
 _HOMES = {
     "GO_TO_BALL_ACTION": "actions",
+    "Measured": "card",
     "ModelCard": "card",
     "ModelError": "file",
     "ObservationCard": "card",
@@ -16,6 +17,7 @@ _HOMES = {
 
 if TYPE_CHECKING:
     from robobt.models.actions import GO_TO_BALL_ACTION as GO_TO_BALL_ACTION
+    from robobt.models.card import Measured as Measured
     from robobt.models.card import ModelCard as ModelCard
     from robobt.models.card import ObservationCard as ObservationCard
     from robobt.models.card import action_outputs as action_outputs

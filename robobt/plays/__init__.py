@@ -13,7 +13,9 @@ from robobt.plays.attack_nn import attack_nn as attack_nn
 from robobt.plays.attack_support import attack_support as attack_support
 from robobt.plays.base import PLAYS as PLAYS
 from robobt.plays.base import Play as Play
+from robobt.plays.base import first_of as first_of
 from robobt.plays.base import play as play
+from robobt.plays.base import when as when
 from robobt.plays.baselines.team_2026_11 import defender as defender
 from robobt.plays.baselines.team_2026_11 import defender_2026_11 as defender_2026_11
 from robobt.plays.baselines.team_2026_11 import field_player as field_player

@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Literal
-
-from robobt.motion.pilot import ROBOBULLS_LIMITS
 from robobt.plays.base import PLAYS, first_of, when
 from robobt.skills.aim.pass_is_steady import PassIsSteady
 from robobt.skills.aim.raters import Rater
@@ -21,14 +18,17 @@ from robobt.tree import Behaviour, FailureIsSuccess
 from robobt.tree.parameters import formerly
 
 
-@formerly(tolerance="rater: {name: segment_clearance, tolerance: ...}", speed="speed_factor")
+@formerly(
+    tolerance="rater: {name: segment_clearance, tolerance: ...}",
+    speed="speed_factor",
+    kick="the play paper/robobulls.py:robobulls_attack_main",
+)
 @PLAYS.register("attack_main")
 def attack_main(
     *,
     rater: Rater = "segment_clearance",
     min_score: float = 0.0,
     max_distance: float | None = None,
-    kick: Literal["default", "robobulls"] = "default",
     shot_speed: float | None = None,
     speed_factor: float = 1.0,
     dribble_speed: float = 2.0,
@@ -45,14 +45,11 @@ def attack_main(
         rater: the shot rater, by name or with settings.
         min_score: worst shot taken, 0 to 1.
         max_distance: no shots from farther than this from the goal [m]; None for no limit.
-        kick: "default", or "robobulls" for the paper's baseline, which also gets
-            to the ball with RoboBulls' pilot.
         shot_speed: kick speed of a shot [m/s]; None for the kick's default.
         speed_factor: factor on the top speed without the ball.
         dribble_speed: top speed with the ball [m/s].
         steady: how long a shot or pass must have been open [s]; RoboBulls uses 0.9.
     """
-    limits = ROBOBULLS_LIMITS if kick == "robobulls" else None
     look = SelectShot(rater=rater, min_score=min_score, max_distance=max_distance)
     return first_of(
         "attack main",
@@ -60,14 +57,14 @@ def attack_main(
             "score",
             FailureIsSuccess("look for a shot", look),
             ShotIsSteady(rise=steady, fall=steady),
-            KickToTarget(style=kick, kick_speed=shot_speed, limits=limits, speed_factor=speed_factor),
+            KickToTarget(kick_speed=shot_speed, speed_factor=speed_factor),
         ),
         when(
             "pass",
             FailureIsSuccess("look for a pass", SelectPass()),
             PassIsSteady(rise=steady, fall=steady),
-            KickToTarget(style=kick, limits=limits, speed_factor=speed_factor),
+            KickToTarget(speed_factor=speed_factor),
         ),
         when("dribble", HasBall(), BestFieldPosition(), DribbleTo(max_speed=dribble_speed)),
-        when("get the ball", GoToBall(limits=limits, speed_factor=speed_factor), PickUpBall()),
+        when("get the ball", GoToBall(speed_factor=speed_factor), PickUpBall()),
     )

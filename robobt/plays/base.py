@@ -40,10 +40,13 @@ def play(name: PlayT | str = "", /) -> PlayT | Callable[[PlayT], PlayT]:
 
 
 def when(name: str, *steps: Behaviour) -> Behaviour:
-    """Return a reactive sequence: conditions, and what to do while they hold."""
+    """Return a reactive sequence of this ``name``: conditions, and what to do while they hold.
+
+    In every tick all ``steps`` are ticked, in order, up to the first that does not succeed.
+    """
     return Sequence(name, memory=False, children=list(steps))
 
 
 def first_of(name: str, *options: Behaviour) -> Behaviour:
-    """Return a reactive selector, which plays the first option that does not fail."""
+    """Return a reactive selector of this ``name``: the first of ``options`` that does not fail is played."""
     return Selector(name, memory=False, children=list(options))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Annotated, Literal, TypeAlias
+from typing import Annotated, TypeAlias
 
 from robobt.plays.base import PLAYS, first_of, when
 from robobt.skills.aim.raters import Rater
@@ -22,11 +22,13 @@ _Shot: TypeAlias = Annotated[
 ]
 
 
-@formerly(shoot_model="shoot: MODEL")
+@formerly(
+    shoot_model="shoot: MODEL",
+    style="the play paper/robobulls.py:robobulls_go_to_ball_and_shoot",
+)
 @PLAYS.register("go_to_ball_and_shoot")
 def go_to_ball_and_shoot(
     *,
-    style: Literal["default", "robobulls"] = "default",
     policy: GoToBallPolicy = "geometric",
     shoot: _Shot = "kick_to_target",
     pickup_speed: float | None = 0.5,
@@ -42,19 +44,15 @@ def go_to_ball_and_shoot(
     Go-To-Ball-And-Shoot.
 
     Args:
-        style: "default" runs the three skills; "robobulls" is the paper's baseline, whose kick includes the
-            way behind the ball.
-        policy: policy of the approach in the default style: "geometric", "ddpg", or the name or file of a
+        policy: policy of the approach: "geometric", "ddpg", or the name or file of a
             model for GoToBall; ``{name: NAME, SETTING: VALUE}`` with settings.
-        shoot: how to shoot in the default style: "kick_to_target" uses KickToTarget at the rater's choice;
+        shoot: how to shoot: "kick_to_target" uses KickToTarget at the rater's choice;
             otherwise a policy for Shoot: "geometric", which also takes the rater's choice, "ddpg", or the
             name or file of a model.
-        pickup_speed: how fast the pick-up closes in on the ball in the default style [m/s]; None for the
+        pickup_speed: how fast the pick-up closes in on the ball [m/s]; None for the
             highest speed that the robot's dribbler takes, for approaches that arrive at speed.
         rater: the shot rater that chooses the point to shoot at, by name or with settings.
     """
-    if style == "robobulls":
-        return when("go to ball and shoot", SelectShot(rater=rater), KickToTarget(style="robobulls"))
     kick = KickToTarget() if shoot == "kick_to_target" else Shoot(policy=shoot)
     aim = () if isinstance(kick, Shoot) and kick.learned else (SelectShot(rater=rater),)
     return first_of(

@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Literal
-
-from robobt.motion.pace import check_factor
 from robobt.motion.pilot import ROBOBULLS_LIMITS
 from robobt.plays.base import PLAYS, first_of, when
 from robobt.skills.aim.aim_upfield import AimUpfield
@@ -19,14 +16,14 @@ from robobt.skills.defence.cover_angle import CoverAngle
 from robobt.skills.defence.cover_near_post import CoverNearPost
 from robobt.skills.defence.return_to_goal import ReturnToGoal
 from robobt.skills.defence.shot_coming import ShotComing
+from robobt.skills.robobulls.kick_as_robobulls import KickAsRobobulls
 from robobt.tree import Behaviour
 from robobt.tree.parameters import formerly
-from robobt.world.limits import RobotLimits
 
 
-@formerly(speed="speed_factor")
+@formerly(speed="speed_factor", style="the play paper/robobulls.py:robobulls_goalkeeper")
 @PLAYS.register("goalkeeper")
-def goalkeeper(*, speed_factor: float = 1.0, style: Literal["default", "robobulls"] = "default") -> Behaviour:
+def goalkeeper(*, speed_factor: float = 1.0) -> Behaviour:
     """Keep the ball out of the own goal; the first branch whose condition holds is ticked.
 
     1. A robot aims at the goal: onto the line of the expected shot.
@@ -41,12 +38,7 @@ def goalkeeper(*, speed_factor: float = 1.0, style: Literal["default", "robobull
     Args:
         speed_factor: factor on its top speed, with and without the ball; 0.5 is the
             paper's half-speed goalkeeper.
-        style: "default" drives within the robot's limits and covers the angle between the posts. "robobulls"
-            is the paper's goalkeeper: it covers the near post, drives at most 2.25 m/s, or 1.5 m/s without
-            danger, with RoboBulls' accelerations, and clears with RoboBulls' kick.
     """
-    if style == "robobulls":
-        return _robobulls(robobulls_limits(1.5 * speed_factor), robobulls_limits(speed_factor))
     return keep_goal(
         speed_factor,
         when(
@@ -59,7 +51,7 @@ def goalkeeper(*, speed_factor: float = 1.0, style: Literal["default", "robobull
 
 
 def keep_goal(speed_factor: float, clear: Behaviour, learned: Behaviour | None = None) -> Behaviour:
-    """Return the tree of ``goalkeeper`` in its default style.
+    """Return the tree of ``goalkeeper`` with a given clearance.
 
     Args:
         speed_factor: factor on the top speed.
@@ -87,7 +79,8 @@ def fitted_goalkeeper(
 ) -> Behaviour:
     """Keep the goal as the paper's goalkeeper does, with traits that were fitted to recorded shots.
 
-    The tree is that of ``goalkeeper`` in the style "robobulls", with one speed for danger and no danger.
+    It covers the near post where ``goalkeeper`` covers the angle between the posts, drives with RoboBulls'
+    limits and clears with RoboBulls' kick.
 
     Args:
         max_speed: top speed [m/s].
@@ -98,36 +91,26 @@ def fitted_goalkeeper(
     limits = ROBOBULLS_LIMITS.model_copy(
         update={"max_speed": max_speed, "acceleration": acceleration, "braking": braking}
     )
-    return _robobulls(limits, limits, offset)
 
-
-def _robobulls(quick: RobotLimits, calm: RobotLimits, offset: float = 0.0) -> Behaviour:
     def block() -> BlockShot:
-        return BlockShot(limits=quick, dribbler=False, dive=False, offset=offset)
+        return BlockShot(limits=limits, dribbler=False, dive=False, offset=offset)
 
     return first_of(
         "goalkeeper",
         when("aim", BallAimedAtGoal(), block()),
         when("shot", ShotComing(min_speed=0.01), block()),
-        when("fetch", BallAtDefenseEdge(), FetchBall(limits=calm)),
+        when("fetch", BallAtDefenseEdge(), FetchBall(limits=limits)),
         when(
             "clear",
             BallRestsInDefense(),
             where_to_clear(),
-            KickToTarget(style="robobulls", limits=calm, goalkeeper=True),
+            KickAsRobobulls(limits=limits, goalkeeper=True),
         ),
-        CoverNearPost(limits=quick),
-        ReturnToGoal(limits=calm),
+        CoverNearPost(limits=limits),
+        ReturnToGoal(limits=limits),
     )
 
 
 def where_to_clear() -> Behaviour:
     """Aim at a team-mate, else at free space."""
     return first_of("where to", SelectClearance(), AimUpfield())
-
-
-def robobulls_limits(factor: float) -> RobotLimits:
-    """Apply the velocity multiplier of RoboBulls' pilot, which scales only the top speed."""
-    return ROBOBULLS_LIMITS.model_copy(
-        update={"max_speed": ROBOBULLS_LIMITS.max_speed * check_factor(factor)}
-    )

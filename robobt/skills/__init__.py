@@ -11,7 +11,11 @@ from robobt.skills.aim.draw_goalkeeper import DrawGoalkeeper as DrawGoalkeeper
 from robobt.skills.aim.pass_is_open import PassIsOpen as PassIsOpen
 from robobt.skills.aim.pass_is_steady import PassIsSteady as PassIsSteady
 from robobt.skills.aim.raters import RATERS as RATERS
+from robobt.skills.aim.raters import ExpectedGoal as ExpectedGoal
+from robobt.skills.aim.raters import NNFiltered as NNFiltered
+from robobt.skills.aim.raters import Rater as Rater
 from robobt.skills.aim.raters import ShotRater as ShotRater
+from robobt.skills.aim.raters.goal_line import goal_candidates as goal_candidates
 from robobt.skills.aim.select_clearance import SelectClearance as SelectClearance
 from robobt.skills.aim.select_pass import SelectPass as SelectPass
 from robobt.skills.aim.select_shot import SelectShot as SelectShot
@@ -21,6 +25,7 @@ from robobt.skills.ball.dribble_to import DribbleTo as DribbleTo
 from robobt.skills.ball.duel import Duel as Duel
 from robobt.skills.ball.face_ball import FaceBall as FaceBall
 from robobt.skills.ball.fetch_ball import FetchBall as FetchBall
+from robobt.skills.ball.go_to_ball import HANDOVER_DISTANCE as HANDOVER_DISTANCE
 from robobt.skills.ball.go_to_ball import GoToBall as GoToBall
 from robobt.skills.ball.intercept import Intercept as Intercept
 from robobt.skills.ball.kick_loose import KickLoose as KickLoose
@@ -72,6 +77,7 @@ from robobt.skills.restarts.keep_distance import KeepDistance as KeepDistance
 from robobt.skills.restarts.place_ball import PlaceBall as PlaceBall
 from robobt.skills.restarts.prepare_restart import PrepareRestart as PrepareRestart
 from robobt.skills.restarts.referee_switch import RefereeSwitch as RefereeSwitch
+from robobt.skills.robobulls.kick_as_robobulls import KickAsRobobulls as KickAsRobobulls
 from robobt.skills.stop import Stop as Stop
 from robobt.skills.store import Pass as Pass
 from robobt.skills.store import Shot as Shot

@@ -27,7 +27,9 @@ from robobt.world.state import RobotId as RobotId
 from robobt.world.state import RobotState as RobotState
 
 _HOMES = {
+    "FloatArray": "geometry",
     "GO_TO_BALL": "features",
+    "Point": "geometry",
     "Seen": "observation",
     "direction": "geometry",
     "distance": "geometry",
@@ -38,6 +40,8 @@ _HOMES = {
 
 if TYPE_CHECKING:
     from robobt.world.features import GO_TO_BALL as GO_TO_BALL
+    from robobt.world.geometry import FloatArray as FloatArray
+    from robobt.world.geometry import Point as Point
     from robobt.world.geometry import direction as direction
     from robobt.world.geometry import distance as distance
     from robobt.world.geometry import wrap_angle as wrap_angle

@@ -104,7 +104,7 @@ def test_the_statistics_of_a_recording_are_those_of_the_match(tmp_path: Path) ->
 
 def test_a_recording_without_a_referee_has_no_statistics(tmp_path: Path) -> None:
     path = tmp_path / "free.robobt.arrows"
-    with MatchLoop(load_scenario("table4_trial1").lasting(0.1), 0, sim_world, path) as match:
+    with MatchLoop(load_scenario("table4_trial1_own").lasting(0.1), 0, sim_world, path) as match:
         assert match.play().teams == {}
     refused = CliRunner().invoke(app, ["record", "statistics", str(path)])
     assert refused.exit_code == 2

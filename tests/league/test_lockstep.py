@@ -64,7 +64,7 @@ def _telling(server: SimServer, on_kick: Callable[[RobotId], None]) -> Callable[
     return stepped
 
 
-@pytest.mark.parametrize("name", ["striker_vs_goalkeeper", "table4_trial2"])
+@pytest.mark.parametrize("name", ["striker_vs_goalkeeper", "table4_trial2_own"])
 def test_kicks_are_counted_as_they_were_made(name: str) -> None:
     made: Counter[str] = Counter()
     results = over_the_network(load_scenario(name), 3, lambda robot: made.update([str(robot)]))

@@ -23,7 +23,7 @@ pytestmark = pytest.mark.integration
 @pytest.fixture(scope="module")
 def scenario() -> Scenario:
     start = {"position": (1.0, 0.5), "heading": 0.0}
-    return load_scenario("table4_trial1").with_robot("blue 0", start=start, limits={"max_speed": 1.5})
+    return load_scenario("table4_trial1_own").with_robot("blue 0", start=start, limits={"max_speed": 1.5})
 
 
 @pytest.fixture(scope="module")

@@ -81,7 +81,9 @@ def test_attackers_differ_in_what_their_names_say():
     assert "rater" not in params["attack_main"]
     assert params["attack_nn, no feint"]["feint"] is False
     assert "feint" not in params["attack_nn"]
-    assert params["attack_main as published"]["kick"] == "robobulls"
+    published = deployed_scenario(NEAR[0], "attack_main as published").robots.blue[0]
+    assert published.play == "paper/robobulls.py:robobulls_attack_main"
+    assert (published.params["shot_speed"], published.params["rater"]["tolerance"]) == (7.5, 0.1965)
 
 
 def test_every_attacker_can_be_built_in_every_situation():

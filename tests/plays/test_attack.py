@@ -2,8 +2,6 @@ from __future__ import annotations
 
 from math import pi
 
-import pytest
-
 from robobt.plays import attack_main, attack_support
 from robobt.testing import (
     Trial,
@@ -66,10 +64,8 @@ def test_from_too_far_away_it_does_not_shoot() -> None:
     assert doing(frame(me, held(me)), max_distance=3.0) == "dribble"
 
 
-@pytest.mark.parametrize("kick", ["default", "robobulls"])
-def test_it_scores_in_an_empty_goal(kick: str) -> None:
-    tree = attack_main(kick=kick)  # type: ignore[arg-type]
-    alone(tree, (-1.0, 1.0, 0.0), ball=(0.5, 0.0), settings="robobulls").run(
+def test_it_scores_in_an_empty_goal() -> None:
+    alone(attack_main(), (-1.0, 1.0, 0.0), ball=(0.5, 0.0), settings="robobulls").run(
         10.0,
         eventually("the ball is in the goal", goal_for(Team.BLUE)),
         always("inside the field", inside_the_field),

@@ -1,13 +1,11 @@
 from __future__ import annotations
 
 from math import pi
-from typing import Literal
 
 import pytest
 
 from robobt.plays import goalkeeper
 from robobt.testing import (
-    Pose,
     Trial,
     alone,
     always,
@@ -26,16 +24,11 @@ from robobt.tree import Behaviour
 from robobt.world import Frame, Team
 from tests.skills.fixed_world import Alone
 
-Style = Literal["default", "robobulls"]
-STYLES: tuple[Style, ...] = ("default", "robobulls")
 HOME = robot(-4.35, 0.0)
 
 
-def playing(
-    ball: tuple[float, ...], style: Style = "default", speed: float = 1.0, start: Pose = (-4.35, 0.0, 0.0)
-) -> Trial:
-    settings = "robobulls" if style == "robobulls" else "default"
-    return alone(goalkeeper(style=style, speed_factor=speed), start, ball, settings)
+def playing(ball: tuple[float, ...]) -> Trial:
+    return alone(goalkeeper(), (-4.35, 0.0, 0.0), ball)
 
 
 def case(now: Frame) -> str:
@@ -58,19 +51,17 @@ def test_every_case_has_its_turn() -> None:
     assert case(frame(HOME, (-4.6, 1.0))) == "ReturnToGoal"
 
 
-@pytest.mark.parametrize("style", STYLES)
 @pytest.mark.parametrize("y", [-0.3, 0.0, 0.3])
-def test_it_saves_a_slow_shot(style: Style, y: float) -> None:
-    playing((-1.0, 0.0, -2.5, y * 2.5 / 3.5), style).run(
+def test_it_saves_a_slow_shot(y: float) -> None:
+    playing((-1.0, 0.0, -2.5, y * 2.5 / 3.5)).run(
         4.0,
         never("the ball is in our goal", goal_for(Team.YELLOW)),
         always("inside the field", inside_the_field),
     )
 
 
-@pytest.mark.parametrize("style", STYLES)
-def test_it_clears_a_ball_that_rests_in_its_area(style: Style) -> None:
-    playing((-3.9, 0.4), style).run(
+def test_it_clears_a_ball_that_rests_in_its_area() -> None:
+    playing((-3.9, 0.4)).run(
         8.0,
         eventually("the ball is far away", lambda frame: frame.ball.x > -2.5),
         never("the ball is in our goal", goal_for(Team.YELLOW)),
@@ -94,26 +85,6 @@ def test_it_brings_a_ball_on_the_edge_of_its_area_into_play_again() -> None:
 def test_it_leaves_a_ball_on_the_edge_to_an_opponent_close_by() -> None:
     opponent = robot(-3.2, 0.0, heading=0.0)
     assert case(frame(HOME, (-3.4, 0.0), opponents=(opponent,))) == "CoverAngle"
-
-
-def fastest(speed: float) -> float:
-    """Top speed on the way from the corner of its area to the line of a shot [m/s]."""
-    trial = playing((0.0, -0.3, -1.5, 0.0), "robobulls", speed, start=(-4.3, 2.0, 0.0))
-    trial.run(2.0)
-    return max(frame.own[0].speed for frame in trial.frames)
-
-
-def test_its_speed_scales_its_top_speed() -> None:
-    assert fastest(0.5) == pytest.approx(1.125, abs=0.02)
-    assert 1.2 < fastest(1.0) <= 2.27
-
-
-def test_at_half_speed_it_covers_less_than_at_full_speed() -> None:
-    ways = []
-    for speed in (0.5, 1.0):
-        trial = playing((0.0, -0.3, -1.5, 0.0), "robobulls", speed, start=(-4.3, 2.0, 0.0))
-        ways.append(2.0 - trial.run(1.5).own[0].y)
-    assert ways[0] < ways[1] - 0.1
 
 
 def test_an_attacker_cannot_see_much_of_the_goal() -> None:

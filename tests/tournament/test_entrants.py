@@ -96,7 +96,7 @@ def test_python_files_come_with_the_entrant(tmp_path: Path) -> None:
         ("no_such_play", "no play is called 'no_such_play'"),
         ("no_such.yaml", "no_such.yaml: cannot be read"),
         ("no_such:blue", "no such file or bundled scenario"),
-        ("table4_trial1:yellow", "yellow has no robot there"),
+        ("table4_trial1_own:yellow", "yellow has no robot there"),
     ],
 )
 def test_what_is_no_entrant_is_one_plain_error(text: str, problem: str) -> None:

@@ -146,7 +146,7 @@ class Rate:
 
     @classmethod
     def of(cls, happened: Sequence[bool], traces: Sequence[str]) -> Rate:
-        """Return the rate in trials with these traces; 0 without trials."""
+        """Return the rate of what ``happened`` in trials with these ``traces``; 0 without trials."""
         different = list(dict(zip(traces, happened, strict=True)).values())
         rate = sum(happened) / len(happened) if happened else 0.0
         if len(different) == 1 < len(happened):
@@ -154,7 +154,7 @@ class Rate:
         return cls(sum(happened), rate, *wilson_interval(sum(different), len(different)))
 
     def interval(self, digits: int = 0) -> str:
-        """Return the interval as text, in percent."""
+        """Return the interval as text, in percent with ``digits`` after the point."""
         if self.low is None or self.high is None:
             return "none: one trial, repeated"
         return f"{self.low:.{digits}%} to {self.high:.{digits}%}"

@@ -153,7 +153,10 @@ class RobotSetup(ScenarioPart):
         return private_files(self.play)
 
     def changed(self, changes: Mapping[str, object]) -> RobotSetup:
-        """Return the setup with changed values; a new play keeps the parameters that it also has."""
+        """Return the setup with ``changes`` of its fields, or of its play's parameters, by name.
+
+        A new play keeps the parameters that it also has.
+        """
         data = {name: getattr(self, name) for name in self.model_fields_set}
         data |= {name: value for name, value in changes.items() if name in RobotSetup.model_fields}
         params = {name: value for name, value in changes.items() if name not in RobotSetup.model_fields}

@@ -47,7 +47,7 @@ class Box(ScenarioPart):
     y: _Range = Field(description="least and greatest y [m]")
 
     def sample(self, rng: np.random.Generator) -> Point:
-        """Sample a point of the box [m]."""
+        """Sample a point of the box from ``rng`` [m]."""
         return (float(rng.uniform(*self.x)), float(rng.uniform(*self.y)))
 
     def __str__(self) -> str:

@@ -69,7 +69,7 @@ class Population(Settings):
     bearing_spread: float = Field(0.0, ge=0, le=1, description="standard deviation of that bearing [rad]")
 
     def sample(self, rng: np.random.Generator) -> Traits:
-        """Draw one goalkeeper and kick, whose error counts positive towards the goalkeeper."""
+        """Sample one goalkeeper and kick from ``rng``; its error counts positive towards the goalkeeper."""
         (drawn,) = self.traits(rng.standard_normal((1, DIMENSIONS))).tolist()
         traits = Traits(*drawn)
         astray = self.kick_follows * rng.normal(self.bearing, self.bearing_spread)
@@ -87,7 +87,7 @@ class Population(Settings):
         return rows
 
     def write(self, path: Path) -> None:
-        """Write it as YAML that :func:`read_population` reads."""
+        """Write it to ``path``, as YAML that :func:`read_population` reads."""
         path.parent.mkdir(parents=True, exist_ok=True)
         write_atomically(path, write_yaml(self.model_dump()))
 

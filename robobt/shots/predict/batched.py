@@ -25,12 +25,12 @@ from robobt.shots.predict.networks import NORM_EPS, NORM_MOMENTUM, TABLE_ONE, La
 class Recipe:
     """How the shot networks are trained.
 
-    Adam on the binary cross-entropy of shuffled batches. For ``warm_up`` epochs
-    nothing stops it; then at most ``epochs`` more, until the loss on the held-out
-    shots has not improved for ``patience`` epochs; the weights of the best of these
-    epochs are kept. Meanwhile the learning rate is multiplied by ``plateau_factor``
-    whenever that loss has not improved by :data:`PLATEAU_GAIN` for
-    ``plateau_patience`` epochs, down to ``least_rate``. The plateau count restarts after the warm-up.
+    The network has these ``layers``. It learns by Adam with the learning rate ``rate`` on the binary
+    cross-entropy of shuffled batches of ``batch`` shots. For ``warm_up`` epochs nothing stops it; then at
+    most ``epochs`` more, until the loss on the held-out shots has not improved for ``patience`` epochs; the
+    weights of the best of these epochs are kept. Meanwhile the learning rate is multiplied by
+    ``plateau_factor`` whenever that loss has not improved by :data:`PLATEAU_GAIN` for ``plateau_patience``
+    epochs, down to ``least_rate``. The plateau count restarts after the warm-up.
 
     Source: the paper, section on training; the rest is Keras' default.
     """

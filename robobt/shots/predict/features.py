@@ -15,14 +15,12 @@ from robobt.world.geometry import FloatArray
 
 
 def pair_features(scenes: ArrayLike) -> FloatArray:
-    """Return Eq. 4, :data:`~robobt.world.features.SHOT`: angle [rad], L, opponent's distance, x, b [m]."""
+    """Return Eq. 4, :data:`~robobt.world.features.SHOT`: angle [rad], L, opponent's distance, x, b [m].
+
+    ``scenes`` (n, 34) are shots' scenes (:func:`robobt.shots.shot_inputs`); the result is (n, 5).
+    """
     b, x, length, _ = motion_features(scenes).T
     return np.stack([np.arctan2(b, x), length, np.hypot(x, b), x, b], axis=-1)
-
-
-def paper_features(scenes: ArrayLike) -> FloatArray:
-    """Return Eq. 4 in the author's units: rad and mm."""
-    return pair_features(scenes) * [1.0, 1e3, 1e3, 1e3, 1e3]
 
 
 def motion_features(scenes: ArrayLike) -> FloatArray:

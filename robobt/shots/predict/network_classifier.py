@@ -39,14 +39,14 @@ class NetworkClassifier(ClassifierMixin, BaseEstimator):  # type: ignore[misc]
         self.random_state = random_state
 
     def fit(self, X: ArrayLike, y: ArrayLike) -> NetworkClassifier:  # noqa: N803
-        """Train it on X (n, F) and two labels y (n,), the greater of which is the one predicted."""
+        """Train it on X (n, F) and two labels y (n,), the greater of which is predicted; return itself."""
         self.network_ = train_networks([self._task(X, y, None)], self.recipe or Recipe())[0]
         return self
 
     def fit_many(
         self, sets: Sequence[tuple[ArrayLike, ArrayLike]], held_out: ArrayLike | None = None
     ) -> list[NetworkClassifier]:
-        """Train clones, each on a set of its own, all at once.
+        """Return clones, each trained on a set of its own, all at once.
 
         Args:
             sets: X (n, F) and y (n,) for each; the i-th clone draws from ``random_state + i``.
@@ -61,7 +61,7 @@ class NetworkClassifier(ClassifierMixin, BaseEstimator):  # type: ignore[misc]
         return clones
 
     def decision_function(self, X: ArrayLike) -> FloatArray:  # noqa: N803
-        """Return logits (n,) of the greater label."""
+        """Return logits (n,) of the greater label for X (n, F)."""
         check_is_fitted(self)
         inputs = validate_data(self, X, reset=False, dtype=np.float64)
         # In single precision an answer would depend a little on the others in the batch.
@@ -70,12 +70,12 @@ class NetworkClassifier(ClassifierMixin, BaseEstimator):  # type: ignore[misc]
             return np.asarray(network(torch.from_numpy(inputs))[:, 0].numpy())
 
     def predict_proba(self, X: ArrayLike) -> FloatArray:  # noqa: N803
-        """Return probabilities (n, 2) of the labels in the order of ``classes_``."""
+        """Return probabilities (n, 2) of the labels for X (n, F), in the order of ``classes_``."""
         logits = self.decision_function(X)
         return np.stack([expit(-logits), expit(logits)], axis=-1)
 
     def predict(self, X: ArrayLike) -> NDArray[np.generic]:  # noqa: N803
-        """Return the likelier label of each sample, (n,)."""
+        """Return the likelier label (n,) of each sample of X (n, F)."""
         likelier = (self.decision_function(X) >= 0.0).astype(int)
         return np.asarray(self.classes_[likelier])
 

@@ -26,7 +26,7 @@ class Layer(NamedTuple):
     activation: Literal["relu", "silu", "linear"]
 
     def activate(self, x: Tensor) -> Tensor:
-        """Apply the activation."""
+        """Return the activation of ``x``, element by element."""
         if self.activation == "relu":
             return torch.relu(x)
         return silu(x) if self.activation == "silu" else x

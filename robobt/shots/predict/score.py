@@ -77,6 +77,7 @@ def _lacking(table: pa.Table, index: int, pairs: bool) -> str:
 def measured(probabilities: ArrayLike, scored: ArrayLike, prefix: str = "") -> dict[str, Measured]:
     """Return accuracy, log-loss and calibration error with their 95 % intervals, by name.
 
+    They are of ``probabilities`` (n,) of a goal, judged by which shots ``scored`` (n,).
     The interval of the accuracy is Wilson's, that of the log-loss Student's over the shots, that of
     the calibration error from :data:`RESAMPLES` resamplings of the shots. Names begin with ``prefix``.
     """

@@ -24,7 +24,7 @@ _NAMES = ("paper_shots.parquet", "paper_shots.csv", "shots.parquet", "shots.csv"
 
 @dataclass(frozen=True)
 class ShotSets:
-    """Shots to learn from and shots to test on.
+    """Shots to learn from, ``train``, and shots to ``test`` on.
 
     In the table of :mod:`robobt.shots.data.schema`; ``author`` is the published predictor where it lies
     beside the shots, ``source`` where they come from, for whoever reads the result.

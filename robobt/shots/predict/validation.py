@@ -2,19 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from sklearn.base import clone
 from sklearn.metrics import log_loss
 from sklearn.model_selection import RepeatedStratifiedKFold
-from sklearn.pipeline import Pipeline
 
-from robobt.shots.predict.network_classifier import NetworkClassifier
 from robobt.statistics import calibration_error
-from robobt.world.geometry import FloatArray
 
 FOLDS = 10
 
@@ -43,7 +38,7 @@ class Judgement:
 
 
 def judge(probabilities: ArrayLike, scored: ArrayLike) -> Judgement:
-    """Judge probabilities (n,) of a goal by which shots scored (n,)."""
+    """Return how good ``probabilities`` (n,) of a goal are, by which shots ``scored`` (n,)."""
     p, goal = np.asarray(probabilities, dtype=np.float64), np.asarray(scored) == 1
     likely = p >= 0.5
     return Judgement(
@@ -56,48 +51,15 @@ def judge(probabilities: ArrayLike, scored: ArrayLike) -> Judgement:
 
 
 def stratified_folds(labels: NDArray[np.int64], repeats: int, seed: int = 0) -> list[Fold]:
-    """Return the runs of a repeated tenfold stratified cross-validation, repeat by repeat."""
+    """Return the runs of a repeated tenfold stratified cross-validation, repeat by repeat.
+
+    Args:
+        labels: label of each sample (n,), of which every fold has the same shares.
+        repeats: how often to divide the samples.
+        seed: of the divisions.
+
+    Returns:
+        For each run the indices to train on and those to test on.
+    """
     split = RepeatedStratifiedKFold(n_splits=FOLDS, n_repeats=repeats, random_state=seed)
     return list(split.split(labels, labels))
-
-
-def predict_folds(
-    predictor: Pipeline, inputs: FloatArray, labels: NDArray[np.int64], folds: Sequence[Fold]
-) -> list[FloatArray]:
-    """Return probabilities of a goal for every fold's test samples, from a fit on its others.
-
-    Networks are trained all at once; the i-th fold's draws from its ``random_state + i``.
-    """
-    if isinstance(predictor[-1], NetworkClassifier):
-        inputs = predictor[:-1].fit_transform(inputs)
-        fitted = predictor[-1].fit_many([(inputs[train], labels[train]) for train, _ in folds])
-    else:
-        fitted = [clone(predictor).fit(inputs[train], labels[train]) for train, _ in folds]
-    return [
-        np.asarray(one.predict_proba(inputs[test])[:, 1])
-        for one, (_, test) in zip(fitted, folds, strict=True)
-    ]
-
-
-def accuracies(
-    predicted: Sequence[FloatArray], labels: NDArray[np.int64], folds: Sequence[Fold]
-) -> FloatArray:
-    """Return the accuracy of every run of a cross-validation, (runs,)."""
-    return np.array(
-        [np.mean((p >= 0.5) == (labels[test] == 1)) for p, (_, test) in zip(predicted, folds, strict=True)]
-    )
-
-
-def judge_repeats(
-    predicted: Sequence[FloatArray], labels: NDArray[np.int64], folds: Sequence[Fold]
-) -> list[Judgement]:
-    """Judge every repeat of a cross-validation on all its samples."""
-    judged = []
-    for start in range(0, len(folds), FOLDS):
-        p = np.empty(len(labels))
-        for one, (_, test) in zip(
-            predicted[start : start + FOLDS], folds[start : start + FOLDS], strict=True
-        ):
-            p[test] = one
-        judged.append(judge(p, labels))
-    return judged

@@ -4,17 +4,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 from math import atan2, cos, radians, sin
-from typing import Literal
 
 from robobt.motion.dribbling import dribbling_limits, sideways_after_kick, turn_with_ball
 from robobt.motion.path_planner import TARGETS, allowed_target, next_waypoint, travel
-from robobt.motion.pilot import ROBOBULLS_LIMITS, roughly
+from robobt.motion.pilot import roughly
 from robobt.motion.run_up import RUN_UP_SPEED, run_up
 from robobt.skills.ball.go_to_ball import meeting_point
 from robobt.skills.ball.pick_up_ball import grab
 from robobt.skills.base import skill
 from robobt.skills.driving import DrivingSkill
-from robobt.skills.robobulls.kick import ROBOBULLS_KICK_SPEED, RobobullsKick
 from robobt.skills.store import Pass
 from robobt.tree import Status
 from robobt.world.command import CHIP_ANGLE, KickTrigger
@@ -30,7 +28,6 @@ MAX_CHIP_SPEED = 6.4
 _SHOT_TOLERANCE = (radians(0.5), radians(4.0))
 """Smallest and largest tolerance of a shot's direction [rad]."""
 _PASS_TOLERANCE = radians(1.5)
-_ROBOBULLS_TOLERANCE = {"shot": radians(1.0), "pass": radians(5.0)}
 
 _BEHIND_BALL_DISTANCE = 0.16
 """Distance behind the ball at which the robot lines up [m]; just outside the planner's detour round the
@@ -90,8 +87,6 @@ class KickToTarget(DrivingSkill):
 
     Args:
         target: where to kick [m]; None takes ``store.shot``, else ``store.pass_``.
-        style: "default", or "robobulls" for the paper's baseline
-            (:class:`~robobt.skills.robobulls.kick.RobobullsKick`).
         kick_speed: speed of the kick [m/s]; None takes the pass's speed, a full shot, or for a chip the speed
             that the distance needs.
         tolerance: angle by which the kick may be off [rad]; None is half the
@@ -99,23 +94,20 @@ class KickToTarget(DrivingSkill):
         pass_tolerance: tolerance for passes only [rad]; None takes ``tolerance``.
         take: take a ball right in front of the robot at once instead of driving round it.
         max_turn: turning rate with the ball [rad/s].
-        limits: how to drive without the ball; None for the robot's own, or
-            RoboBulls' in that style.
+        limits: how to drive without the ball; None for the robot's own.
         speed_factor: factor on the top speed.
         goalkeeper: may enter the own defence area.
         chip: chip the ball over robots in its way.
         touch_downs: number of the chip's touch-down that is to be at the target.
 
     Raises:
-        ValueError: no such style, a chip in RoboBulls', fewer than one touch-down, or a kick speed or
-            tolerance that is not positive.
+        ValueError: fewer than one touch-down, or a kick speed or tolerance that is not positive.
     """
 
     reads = ("shot", "pass_")
     writes = ("team",)
 
     target: Point | None = None
-    style: Literal["default", "robobulls"] = "default"
     kick_speed: float | None = None
     tolerance: float | None = None
     pass_tolerance: float | None = None
@@ -129,10 +121,6 @@ class KickToTarget(DrivingSkill):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        if self.style not in ("default", "robobulls"):
-            raise ValueError(f"style must be 'default' or 'robobulls', not {self.style!r}")
-        if self.chip and self.style == "robobulls":
-            raise ValueError("RoboBulls' style has no chip; leave style at 'default'")
         if self.touch_downs < 1:
             raise ValueError(f"touch_downs must be at least 1, not {self.touch_downs}")
         for setting in ("kick_speed", "tolerance", "pass_tolerance"):
@@ -140,10 +128,6 @@ class KickToTarget(DrivingSkill):
             if value is not None and not value > 0.0:
                 raise ValueError(f"{setting} must be positive, not {value}")
         self._carry = dribbling_limits(_CARRY_SPEED, self.max_turn, _CARRY_ACCELERATION)
-        self._robobulls: RobobullsKick | None = None
-        if self.style == "robobulls":
-            limits = self.limits or ROBOBULLS_LIMITS
-            self._robobulls = RobobullsKick(goalkeeper=self.goalkeeper, limits=limits)
 
     def needs(self) -> list[tuple[str, ...]]:
         """Require a shot or a pass, unless ``target`` is given."""
@@ -153,8 +137,6 @@ class KickToTarget(DrivingSkill):
         """Forget the last kick."""
         self._kicking = None
         self._was_near = False
-        if self._robobulls is not None:
-            self._robobulls.start()
 
     def on_running(self) -> Status:
         """Aim, or kick, for one tick."""
@@ -165,8 +147,6 @@ class KickToTarget(DrivingSkill):
         if order is None:
             return self.fail("no target")
         self.draw.line(TARGETS, self.ball.position, order.target)
-        if self._robobulls is not None:
-            return self._as_robobulls(self._robobulls, order)
         gap = distance(self.me.position, self.ball.position)
         if gap < _NEAR_BALL_DISTANCE:
             self._was_near = True
@@ -292,15 +272,6 @@ class KickToTarget(DrivingSkill):
             return False
         line = direction(ball.position, order.target)
         return ball.vx * cos(line) + ball.vy * sin(line) > _KICKED_SPEED_SHARE * order.along
-
-    def _as_robobulls(self, kick: RobobullsKick, order: _Order) -> Status:
-        default = _ROBOBULLS_TOLERANCE["shot" if order.pass_ is None else "pass"]
-        kick.tolerance = default if self.tolerance is None else self.tolerance
-        kick.kick_speed = ROBOBULLS_KICK_SPEED if self.kick_speed is None else self.kick_speed
-        status = kick.tick(self.store, order.target)
-        if self.store.command.kick_speed > 0.0:
-            self._note_pass(order)
-        return self.succeed("kicked") if status is Status.SUCCESS else self.run(kick.stage.value)
 
     def _note_pass(self, order: _Order) -> None:
         if order.pass_ is not None:

@@ -1,1 +1,1 @@
-"""The paper's own team software, RoboBulls, as its published code behaves."""
+"""The kick of RoboBulls, the paper's own team software, as its published code has it."""

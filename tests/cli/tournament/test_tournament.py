@@ -153,7 +153,7 @@ def test_a_folder_in_the_place_of_a_report_is_refused_before_the_first_match(tmp
         (("take_shot", "attack_main:speed_factor="), "speed"),
         (("take_shot", "gone.yaml"), "gone.yaml: cannot be read"),
         (("take_shot", "attack_nn", "--scenario", "gone"), "no such file or bundled scenario"),
-        (("take_shot", "attack_nn", "--scenario", "table4_trial1"), "where yellow has no robot"),
+        (("take_shot", "attack_nn", "--scenario", "table4_trial1_own"), "where yellow has no robot"),
         (("take_shot", "attack_nn", "--set", "ends.time=3"), "ends.time: there is no such field"),
         (("take_shot", "attack_nn", "--recordings", "all"), "needs --out"),
         (("take_shot", "attack_nn", "--referee", "none"), "must be own or official"),

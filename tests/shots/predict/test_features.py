@@ -2,13 +2,13 @@ import numpy as np
 import pytest
 
 from robobt.shots.data import read_shots, shot_inputs
-from robobt.shots.predict.features import motion_features, pair_features, paper_features
+from robobt.shots.predict.features import motion_features, pair_features
 from robobt.world.features import SCENE_HEAD, SHOT_SCENE, shot_features
 from tests.shots.made_up import made_up_table
 from tests.shots.real_data import REAL_SHOTS, needs_real_shots
 
 
-def test_the_pair_features_are_those_of_the_rater_and_the_papers_are_the_same_in_millimetres():
+def test_the_pair_features_are_those_of_the_rater():
     table = made_up_table(10)
     row = table.to_pylist()[3]
     eq4 = shot_features(
@@ -18,10 +18,9 @@ def test_the_pair_features_are_those_of_the_rater_and_the_papers_are_the_same_in
     )[0, 0]
     scenes = shot_inputs(table)
     assert pair_features(scenes)[3] == pytest.approx(eq4)
-    assert paper_features(scenes)[3] == pytest.approx(eq4 * [1.0, 1e3, 1e3, 1e3, 1e3])
 
 
-@pytest.mark.parametrize("features", [paper_features, motion_features])
+@pytest.mark.parametrize("features", [pair_features, motion_features])
 def test_a_mirrored_shot_has_the_same_features(features):
     scenes = shot_inputs(made_up_table(20))
     mirrored = scenes.copy()
@@ -31,7 +30,7 @@ def test_a_mirrored_shot_has_the_same_features(features):
 
 def test_features_of_something_else_than_scenes_are_refused():
     with pytest.raises(ValueError, match=f"{SHOT_SCENE.size} entries"):
-        paper_features(np.zeros((3, 5)))
+        pair_features(np.zeros((3, 5)))
 
 
 @needs_real_shots
@@ -41,11 +40,11 @@ def test_the_features_of_the_real_shots_are_the_authors(name: str):
     x, across = table.column("opp_x").to_numpy(), table.column("opp_y").to_numpy()
     theirs = [
         np.abs(np.arctan2(across, x)),
-        *(1e3 * table.column(column).to_numpy() for column in ("distance_to_goal", "distance_to_opp")),
-        1e3 * x,
-        1e3 * np.abs(across),
+        *(table.column(column).to_numpy() for column in ("distance_to_goal", "distance_to_opp")),
+        x,
+        np.abs(across),
     ]
     scenes = shot_inputs(table)
-    np.testing.assert_allclose(paper_features(scenes), np.stack(theirs, axis=-1), atol=1e-3)
+    np.testing.assert_allclose(pair_features(scenes), np.stack(theirs, axis=-1), atol=1e-6)
     speeds = motion_features(scenes)[:, 3]
     np.testing.assert_allclose(speeds, table.column("v_towards_ball").to_numpy(), atol=1e-6)

@@ -5,9 +5,9 @@ import numpy as np
 import pytest
 import torch
 
+from paper.predictors import paper_features
 from robobt.shots.data import ShotDataError, goals, read_shots, shot_inputs
 from robobt.shots.predict.batched import Recipe, TrainingSet, train_networks
-from robobt.shots.predict.features import paper_features
 from robobt.shots.predict.networks import author_network
 from robobt.shots.predict.validation import judge
 from tests.shots.real_data import REAL_SHOTS, needs_real_shots

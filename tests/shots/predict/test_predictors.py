@@ -1,19 +1,14 @@
 import numpy as np
 import pytest
-from sklearn.base import clone
-from sklearn.pipeline import make_pipeline
-from sklearn.preprocessing import FunctionTransformer
 from sklearn.utils.estimator_checks import parametrize_with_checks
 
-from robobt.shots.data import goals, read_shots, shot_inputs
+from robobt.shots.data import goals, shot_inputs
 from robobt.shots.predict import best_predictor
 from robobt.shots.predict.batched import Recipe
-from robobt.shots.predict.features import paper_features
 from robobt.shots.predict.network_classifier import NetworkClassifier
-from robobt.shots.predict.validation import accuracies, judge_repeats, predict_folds, stratified_folds
+from robobt.shots.predict.validation import stratified_folds
 from robobt.world.features import SCENE_HEAD
 from tests.shots.made_up import QUICK, made_up_table
-from tests.shots.real_data import REAL_SHOTS, needs_real_shots
 
 pytestmark = pytest.mark.integration
 
@@ -47,21 +42,6 @@ def test_the_best_predictor_takes_a_speed_that_was_not_recorded_at_its_median():
     assert np.mean(blind.predict(x) == y) > 0.7
 
 
-def test_the_folds_of_a_network_trained_at_once_are_those_trained_alone():
-    table = made_up_table(120)
-    x, y = shot_inputs(table), goals(table)
-    folds = stratified_folds(y, 1)
-    predictor = make_pipeline(FunctionTransformer(paper_features), NetworkClassifier(QUICK))
-    together = predict_folds(predictor, x, y, folds)
-    for i, (train, test) in enumerate(folds[:3]):
-        alone = clone(predictor).set_params(networkclassifier__random_state=i).fit(x[train], y[train])
-        np.testing.assert_allclose(alone.predict_proba(x[test])[:, 1], together[i], atol=0.05)
-    assert accuracies(together, y, folds).shape == (10,)
-    judged = judge_repeats(together, y, folds)[0]
-    assert np.sum(judged.confusion) == judged.shots == 120
-    assert judged.accuracy == pytest.approx(np.trace(judged.confusion) / 120)
-
-
 def test_each_repeat_of_a_cross_validation_tests_every_shot_once():
     labels = np.arange(60) % 3 == 0
     folds = stratified_folds(labels.astype(np.int64), 2, seed=1)
@@ -86,21 +66,3 @@ def test_a_network_holds_out_the_samples_it_is_given():
     assert np.abs(one - other).max() > 1e-6
     with pytest.raises(ValueError, match="held_out"):
         network.fit_many([(x, y)], held_out=np.ones(60, dtype=bool))
-
-
-@needs_real_shots
-@pytest.mark.parametrize(
-    ("repeats", "accuracy", "log_loss"),
-    # A single repeat is up to a hundredth off the mean of ten.
-    [(1, 0.895, 0.235), pytest.param(10, 0.905, 0.225, marks=pytest.mark.slow)],
-    ids=["once", "ten times"],
-)
-def test_the_best_predictor_reaches_its_figures_in_cross_validation_of_the_real_shots(
-    repeats: int, accuracy: float, log_loss: float
-):
-    train = read_shots(REAL_SHOTS / "train.csv")
-    x, y = shot_inputs(train), goals(train)
-    folds = stratified_folds(y, repeats)
-    judged = judge_repeats(predict_folds(best_predictor(), x, y, folds), y, folds)
-    assert np.mean([one.accuracy for one in judged]) >= accuracy
-    assert np.mean([one.log_loss for one in judged]) <= log_loss

@@ -47,11 +47,6 @@ def test_without_a_target_it_fails() -> None:
     assert alone.tree.feedback_message == "no target"
 
 
-def test_an_unknown_style_is_refused() -> None:
-    with pytest.raises(ValueError, match="'wild'"):
-        KickToTarget(style="wild")  # type: ignore[arg-type]
-
-
 def test_aimed_and_with_the_ball_it_kicks_at_full_speed() -> None:
     alone, me = Alone(KickToTarget(target=GOAL)), robot(contact=True)
     assert alone.tick(frame(me, ball=held(me))) is Status.RUNNING
@@ -213,20 +208,6 @@ def test_it_keeps_off_the_wall_and_off_robots_on_its_way() -> None:
     )
 
 
-def test_robobulls_style_kicks_too_but_takes_its_time() -> None:
-    times = {}
-    for style in ("default", "robobulls"):
-        kick = KickToTarget(target=GOAL, style=style)  # type: ignore[arg-type]
-        trial = alone(kick, (-3.9, 0.0, 0.0), settings="robobulls", period=0.03)
-        trial.run(
-            8.0,
-            eventually("the skill succeeds", succeeds(kick)),
-            eventually("the ball is in the goal", goal_for(Team.BLUE)),
-        )
-        times[style] = trial.kicks[0][0]
-    assert times["default"] < 0.7 * times["robobulls"]
-
-
 def test_a_chip_is_as_fast_as_its_first_touch_down_needs() -> None:
     alone, me = Alone(KickToTarget(target=(2.0, 0.0), chip=True)), robot(contact=True)
     ball = held(me)
@@ -274,8 +255,6 @@ def test_a_chipped_pass_is_kicked_as_fast_as_it_says() -> None:
 
 
 def test_what_cannot_be_chipped_is_refused() -> None:
-    with pytest.raises(ValueError, match="no chip"):
-        KickToTarget(style="robobulls", chip=True)
     with pytest.raises(ValueError, match="touch_downs"):
         KickToTarget(chip=True, touch_downs=0)
 

@@ -450,7 +450,7 @@ def test_the_palette_lists_every_skill_with_parameters_and_entries() -> None:
     assert set(models) >= set(SKILLS)
     assert models["BallInOwnHalf"][0].text == "where the own side ends [m]; 0 is the half-way line."
     ports = {port.get("name"): (port.tag, port.get("default")) for port in models["KickToTarget"]}
-    assert ports["style"] == ("input_port", "default")
+    assert ports["touch_downs"] == ("input_port", "1")
     assert ports["shot"] == ("input_port", "{shot}")
     assert ports["team"] == ("output_port", "{team}")
     assert {port.get("name"): port.tag for port in models["SelectShot"]}["shot"] == "inout_port"

@@ -18,6 +18,7 @@ from robobt.skills import GoToPose, IsRestart, SelectShot, Stop, Wall
 from robobt.skills.aim.raters import OpenAngle
 from robobt.skills.restarts.referee_switch import RefereeSwitch
 from robobt.tree import Behaviour, Inverter, Leaf, Selector, Sequence, Status, nodes
+from robobt.tree.by_name import ByName
 from robobt.tree.interop import (
     TreeFileError,
     Vocabulary,
@@ -93,6 +94,9 @@ def other_values(parameter: Any) -> list[Any]:
     hint = parameter.hint
     if get_origin(hint) is Literal:
         return list(get_args(hint))
+    for part in get_args(hint):
+        if isinstance(part, ByName):
+            return list(part.registry)
     by_type: list[tuple[type, list[Any]]] = [(bool, [True, False]), (float, [0.5]), (int, [1, 2])]
     return next((values for kind, values in by_type if kind in (hint, *get_args(hint))), [])
 

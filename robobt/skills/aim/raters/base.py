@@ -48,7 +48,7 @@ class ShotRater(Settings, ABC):
     ) -> tuple[list[Shot], Chances | None]:
         """Return the openings, and the chance at every point of the goal line where the rater computes one.
 
-        Arguments are as for :meth:`ShotRater.rate_all`.
+        Arguments are as for :meth:`~robobt.skills.aim.raters.base.ShotRater.rate_all`.
         """
         return self.rate_all(frame, origin, me, delay=delay), None
 

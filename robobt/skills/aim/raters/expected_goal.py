@@ -72,7 +72,14 @@ class ExpectedGoal(LearnedRater):
     def chances(self, frame: Frame, origin: Point, me: RobotState, points: FloatArray) -> FloatArray | None:
         """Compute the probability of a goal for every target point, None where no shot can enter the goal.
 
-        The result is (T,); ``points`` (T, 2) are on the opponent's goal line, from right to left [m].
+        Args:
+            frame: the field, seen from the shooter's side.
+            origin: where the ball will be kicked from [m].
+            me: the robot that kicks.
+            points: (T, 2) on the opponent's goal line, from right to left [m].
+
+        Returns:
+            The probabilities (T,).
         """
         mouth = goal_mouth(frame.field, origin, BALL_RADIUS)
         if mouth is None:

@@ -32,7 +32,7 @@ def goal_candidates(field: FieldGeometry, spacing: float = 0.01) -> FloatArray:
     The row has as many points as fit between the posts, leaving :data:`POST_GAP` free at either post: 94 for
     a goal of 1 m at the paper's spacing of 10 mm. It is centred on the goal, so it is its own mirror image;
     the paper's row starts at the right end, up to half a spacing off centre. The array is (T, 2) [m] and
-    read-only.
+    read-only. ``field`` has the goal, and ``spacing`` is that of the points [m].
     """
     return _candidates(field.half_length, field.goal_width, spacing)
 

@@ -62,7 +62,8 @@ class NNFiltered(LearnedRater):
     def chances(self, frame: Frame, me: RobotState, points: FloatArray) -> FloatArray:
         """Compute the lowest chance past any robot for each of (T, 2) target points, (T,).
 
-        It is 1 where nobody is ahead of the shooter.
+        It is 1 where nobody is ahead of the shooter, ``me``. ``frame`` is seen from the shooter's side, and
+        ``points`` are on the opponent's goal line [m].
         """
         others = obstacles(frame, me)
         ahead = others[others[:, 0] >= me.x]
