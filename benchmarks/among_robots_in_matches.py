@@ -25,18 +25,14 @@ from benchmarks.transfer import SEED, WORLDS
 from robobt.learning.envs import GoToBallAmongRobotsSettings, make_task
 from robobt.learning.envs.go_to_ball.task import TOUCHING
 from robobt.learning.opponents.patrols import PATROL_TRAITS, Patrols
-from robobt.match import MatchLoop, Scenario
-from robobt.match.loop import WorldFactory
-from robobt.plays.base import PLAYS
-from robobt.sim.records import COMMAND, size
-from robobt.skills import GoToBall
-from robobt.skills.base import Skill, skill
+from robobt.match import MatchLoop, Scenario, WorldFactory
+from robobt.plays import PLAYS
+from robobt.sim import COMMAND
+from robobt.sim.records import size
+from robobt.skills import GoToBall, Skill, skill
 from robobt.statistics import mean_interval
 from robobt.tree import Behaviour, Status
-from robobt.world import DIVISION_B
-from robobt.world.command import RobotCommand
-from robobt.world.game import Team
-from robobt.world.geometry import FloatArray, distance, wrap_angle
+from robobt.world import DIVISION_B, FloatArray, RobotCommand, Team, distance, wrap_angle
 from robobt.world.rules import in_defense_area
 from robobt.worlds import SIM, world_from
 

@@ -31,8 +31,9 @@ import robobt
 from benchmarks.baselines_report import add_cell, draw, read_cells, table
 from robobt.config.commit import source_commit
 from robobt.config.extras import need
+from robobt.learning import TaskSettings
 from robobt.learning.agents.networks import one_thread, policy_of
-from robobt.learning.envs import TaskSettings, find_task, make_task
+from robobt.learning.envs import find_task, make_task
 from robobt.learning.envs.soccer.settings import SoccerSettings
 from robobt.learning.envs.soccer.suite import against
 from robobt.learning.tasks import environment_id
@@ -45,8 +46,7 @@ from robobt.learning.training.problems import Problem, problem_of
 from robobt.learning.training.run import TrainingRun
 from robobt.learning.training.run_folder import RunFolder
 from robobt.learning.training.settings import settings_of
-from robobt.models.card import ModelCard, ObservationCard, action_outputs
-from robobt.models.export import export_model
+from robobt.models import ModelCard, ObservationCard, action_outputs, export_model
 
 if TYPE_CHECKING:
     from robobt.learning.envs.gymnasium_base import TaskVectorEnv
@@ -258,7 +258,7 @@ def train_sb3(
     import stable_baselines3
     from stable_baselines3.common.noise import NormalActionNoise
 
-    from robobt.learning.envs.stable_baselines3 import ArenasVecEnv
+    from robobt.learning import ArenasVecEnv
 
     name = f"{environment_id(TASKS[task])}-v0"
     how: dict[str, Any] = {"vectorization_mode": "vector_entry_point", "settings": environment}

@@ -12,7 +12,7 @@ import matplotlib
 import numpy as np
 from numpy.typing import NDArray
 
-from robobt.config.figures import new_figure, save_figure
+from robobt.config import new_figure, save_figure
 
 Cells = Sequence[Mapping[str, Any]]
 

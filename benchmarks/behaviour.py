@@ -58,7 +58,7 @@ def _sim() -> object:
 
 
 def _motion() -> object:
-    from robobt.motion.pilot import drive
+    from robobt.motion import drive
     from robobt.world import RobotLimits, RobotState
 
     rng = np.random.default_rng(_SEED)
@@ -71,8 +71,8 @@ def _motion() -> object:
 
 
 def _world() -> object:
-    from robobt.world import DIVISION_B
-    from robobt.world.features import GO_TO_BALL, go_to_ball_rows, shoot_rows, shot_features
+    from robobt.world import DIVISION_B, GO_TO_BALL
+    from robobt.world.features import go_to_ball_rows, shoot_rows, shot_features
     from robobt.world.records import BALL_SIZE, ROBOT_SIZE
     from robobt.world.rules import is_out
 
@@ -89,8 +89,7 @@ def _world() -> object:
 
 
 def _tree() -> object:
-    from robobt.tree import Behaviour, Selector, Sequence, Status, TreeRunner
-    from robobt.tree.nodes import CommittingSelector
+    from robobt.tree import Behaviour, CommittingSelector, Selector, Sequence, Status, TreeRunner
 
     rng = np.random.default_rng(_SEED)
     statuses = (Status.SUCCESS, Status.FAILURE, Status.RUNNING)
@@ -144,8 +143,7 @@ def _models() -> object:
 
 
 def _shots() -> object:
-    from robobt.shots.collect import CollectionSettings, collect_shots
-    from robobt.shots.data import read_shots
+    from robobt.shots import CollectionSettings, collect_shots, read_shots
 
     with TemporaryDirectory() as folder:
         file = Path(folder) / "shots.csv"

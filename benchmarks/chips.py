@@ -9,17 +9,25 @@ from typing import Annotated, Any
 import numpy as np
 import typer
 
-from robobt.cli.common import MAX_SEED, Json, console, errors, print_json, say, table
+from robobt.cli import MAX_SEED, Json, console, print_json, say, table
+from robobt.cli.common import errors
 from robobt.league.estimate.filter import VisionFilter
 from robobt.league.serve.cameras import Cameras
 from robobt.sim import SimSettings, SimWorld, settings_from
 from robobt.sim.realism import RealismSettings
+from robobt.world import (
+    BALL_RADIUS,
+    DIVISION_B,
+    ROBOT_RADIUS,
+    BallState,
+    Frame,
+    Placement,
+    RobotCommand,
+    RobotId,
+    Team,
+)
 from robobt.world.ball_model import GRAVITY
-from robobt.world.command import CHIP_ANGLE, RobotCommand
-from robobt.world.field import DIVISION_B
-from robobt.world.game import Team
-from robobt.world.protocol import Placement
-from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS, BallState, Frame, RobotId
+from robobt.world.command import CHIP_ANGLE
 
 PERIOD = 1 / 60
 """Time between two frames of the cameras [s]."""

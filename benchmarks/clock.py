@@ -14,13 +14,13 @@ import typer
 from numpy.typing import NDArray
 
 from benchmarks.league import free_endpoints
-from robobt.cli.common import MAX_SEED, Json, console, errors, print_json, table
+from robobt.cli import MAX_SEED, Json, console, print_json, table
+from robobt.cli.common import errors
 from robobt.league.connection import Connection
 from robobt.league.known_field import KnownField
 from robobt.league.wire.vision import BallDetection, CameraFrame, RobotDetection
 from robobt.league.world import LeagueWorld
-from robobt.world.game import Team
-from robobt.world.state import RobotId
+from robobt.world import RobotId, Team
 
 Fault = Literal["none", "frozen", "lost", "queued", "restart"]
 """What happens now and then: nothing; the field's clock stands still; packets are lost, or arrive late

@@ -8,9 +8,9 @@ from typing import Annotated
 
 import typer
 
-from robobt.cli.common import Bundled, Json, Progress, print_json, say
-from robobt.engines.cluster import RayEngine
-from robobt.engines.run import running_on
+from robobt.cli import Json, Progress, print_json, say
+from robobt.cli.common import Bundled
+from robobt.engines import RayEngine, running_on
 from robobt.match import load_scenario, run_trials_in
 from robobt.worlds import sim_world
 

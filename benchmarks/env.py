@@ -12,15 +12,17 @@ import numpy as np
 import typer
 
 import robobt.learning  # noqa: F401 - registers the environments
-from robobt.cli.common import Json, console, errors, print_json, table
-from robobt.learning.envs.go_to_ball.task import GoToBallTask
+from robobt.cli import Json, console, print_json, table
+from robobt.cli.common import errors
+from robobt.learning import GoToBallTask, straight_drive
 from robobt.learning.envs.score_on_goalkeeper.task import ScoreOnGoalkeeperTask
-from robobt.learning.envs.scripted import crowd, drive_and_kick, straight_drive, turn_and_kick
+from robobt.learning.envs.scripted import crowd, drive_and_kick, turn_and_kick
 from robobt.learning.envs.shoot.task import ShootTask
 from robobt.learning.envs.soccer.suite import Small3v3Settings
 from robobt.learning.envs.soccer.task import SoccerTask
 from robobt.learning.envs.task import FloatArray
-from robobt.sim.records import COMMAND, size
+from robobt.sim import COMMAND
+from robobt.sim.records import size
 
 SIZES = {"single": 1, "vector_64": 64, "vector": 256}
 """Ends of the result's keys, and how many arenas they stand for."""

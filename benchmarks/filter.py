@@ -10,21 +10,15 @@ from typing import Annotated
 import numpy as np
 import typer
 
-from robobt.cli.common import MAX_SEED, Json, console, errors, print_json, say, table
+from robobt.cli import MAX_SEED, Json, console, print_json, say, table
+from robobt.cli.common import errors
 from robobt.league.estimate.filter import VisionFilter
 from robobt.league.serve.cameras import Cameras
 from robobt.league.wire.vision import CameraFrame
-from robobt.match import load_scenario
-from robobt.match.loop import MatchLoop
-from robobt.match.scenario.scenario import Scenario
+from robobt.match import MatchLoop, Scenario, load_scenario
 from robobt.sim import SimSettings, SimWorld, settings_from
 from robobt.sim.realism import RealismSettings, realism_level
-from robobt.world.command import RobotCommand
-from robobt.world.field import DIVISION_B
-from robobt.world.game import Team
-from robobt.world.geometry import wrap_angle
-from robobt.world.protocol import Placement
-from robobt.world.state import Frame, RobotId
+from robobt.world import DIVISION_B, Frame, Placement, RobotCommand, RobotId, Team, wrap_angle
 
 PERIOD = 1 / 60
 """Time between two frames of the cameras [s]."""

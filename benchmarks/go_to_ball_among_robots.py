@@ -17,9 +17,9 @@ from numpy.typing import NDArray
 
 from robobt import load_policy
 from robobt.cli.common import parse_assignments
+from robobt.learning import run_starts
 from robobt.learning.envs import GoToBallAmongRobotsSettings, make_task
 from robobt.learning.envs.arena_task import Policy
-from robobt.learning.envs.evaluation import run_starts
 from robobt.learning.envs.scripted import freest_way, straight_drive_among
 from robobt.learning.training.teachers import playing, skill
 from robobt.statistics import mean_interval, wilson_interval

@@ -16,7 +16,8 @@ import numpy as np
 import typer
 from rich.markup import escape
 
-from robobt.cli.common import Bundled, Json, errors, print_json, say
+from robobt.cli import Json, print_json, say
+from robobt.cli.common import Bundled, errors
 from robobt.config.systems import need_posix
 from robobt.league.connection import Connection
 from robobt.league.serve.served_field import ServedField
@@ -25,11 +26,9 @@ from robobt.league.serve.serving import served_scenario
 from robobt.league.wire.endpoints import VISION_GROUP, Endpoint, Endpoints
 from robobt.league.wire.sockets import LOOPBACK_ADDRESS, Receiver
 from robobt.league.world import LeagueWorld
-from robobt.match import load_scenario
-from robobt.match.loop import MatchLoop
-from robobt.match.scenario.scenario import Scenario
+from robobt.match import MatchLoop, Scenario, load_scenario
 from robobt.sim import settings_from
-from robobt.world.state import Frame
+from robobt.world import Frame
 
 RATE = 60.0
 """Frame rate of the served vision [Hz]."""

@@ -15,12 +15,11 @@ from typing import Annotated, TypedDict
 import typer
 from rich.markup import escape
 
-from robobt.cli.common import Bundled, Imports, Json, Seed, errors, import_files, print_json, say
-from robobt.live.server import Server
-from robobt.live.session import LATE, Live
-from robobt.match import load_scenario
-from robobt.match.loop import MatchLoop, WorldFactory
-from robobt.match.scenario.scenario import Scenario
+from robobt.cli import Json, Seed, print_json, say
+from robobt.cli.common import Bundled, Imports, errors, import_files
+from robobt.live import Live, Server
+from robobt.live.session import LATE
+from robobt.match import MatchLoop, Scenario, WorldFactory, load_scenario
 from robobt.worlds import sim_world
 
 _CLIENT = """

@@ -10,14 +10,12 @@ from typing import Annotated, TypedDict
 import typer
 from rich.markup import escape
 
-from robobt.cli.common import Bundled, Imports, Json, Seed, errors, import_files, print_json, say
-from robobt.match import load_scenario
-from robobt.match.loop import MatchLoop, WorldFactory
+from robobt.cli import Json, Seed, print_json, say
+from robobt.cli.common import Bundled, Imports, errors, import_files
+from robobt.match import MatchLoop, Scenario, WorldFactory, load_scenario
 from robobt.match.referee.events import Decision
 from robobt.match.refereeing import MatchReferee, own_referee
-from robobt.match.scenario.scenario import Scenario
-from robobt.world.field import FieldGeometry
-from robobt.world.state import Frame
+from robobt.world import FieldGeometry, Frame
 from robobt.worlds import sim_world
 
 _BLOCK = 1.0

@@ -13,7 +13,7 @@ import typer
 from rich.markup import escape
 
 from benchmarks.behaviour import ROOMS, behaviour, processor
-from robobt.cli.common import Json, Progress, console, print_json, say, table
+from robobt.cli import Json, Progress, console, print_json, say, table
 from robobt.config.atomic import write_atomically
 from robobt.config.commit import source_commit
 from robobt.config.errors import ConfigError

@@ -11,16 +11,13 @@ import torch
 import typer
 
 from benchmarks.tree import medians, print_figures
-from robobt.cli.common import Json, errors
-from robobt.models.policy import bare_module, load_policy
-from robobt.skills.ball.go_to_ball import GoToBall
-from robobt.skills.ball.learned_skill import LearnedSkill
-from robobt.skills.ball.shoot import Shoot
-from robobt.skills.store import Store
+from robobt.cli import Json
+from robobt.cli.common import errors
+from robobt.models import load_policy
+from robobt.models.policy import bare_module
+from robobt.skills import GoToBall, LearnedSkill, Shoot, Store
 from robobt.tree import Behaviour, TreeRunner
-from robobt.world.command import RobotCommand
-from robobt.world.field import DIVISION_B
-from robobt.world.state import BallState, Frame, RobotState
+from robobt.world import DIVISION_B, BallState, Frame, RobotCommand, RobotState
 
 PERIOD = 0.03
 """Time between two ticks, that of the shipped policies [s]."""

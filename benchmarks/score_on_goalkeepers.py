@@ -18,7 +18,8 @@ import numpy as np
 
 from robobt import load_policy
 from robobt.cli.common import parse_assignments
-from robobt.learning.envs import ScoreOnGoalkeeperSettings, ScoreOnGoalkeeperTask, run_starts
+from robobt.learning import run_starts
+from robobt.learning.envs import ScoreOnGoalkeeperSettings, ScoreOnGoalkeeperTask
 from robobt.learning.envs.evaluation import Decide
 from robobt.learning.envs.scripted import drive_and_kick
 from robobt.learning.opponents.keepers import GOALKEEPER_KINDS

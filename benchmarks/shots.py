@@ -14,18 +14,13 @@ import typer
 from numpy.typing import NDArray
 
 from paper.predictors import paper_features
-from robobt.cli.common import Json, Progress, print_json, say
-from robobt.shots.data.inputs import goals, shot_inputs
-from robobt.shots.predict.network_classifier import NetworkClassifier
-from robobt.shots.predict.shot_sets import load_shot_sets
-from robobt.shots.predict.validation import FOLDS, stratified_folds
-from robobt.skills.aim.raters.goal_line import goal_candidates, obstacles
-from robobt.skills.aim.raters.nn_filtered import NNFiltered
+from robobt.cli import Json, Progress, print_json, say
+from robobt.shots import FOLDS, NetworkClassifier, goals, load_shot_sets, shot_inputs, stratified_folds
+from robobt.skills import NNFiltered, goal_candidates
+from robobt.skills.aim.raters.goal_line import obstacles
 from robobt.skills.aim.raters.shot_predictor import shot_predictor
+from robobt.world import DIVISION_B, BallState, FloatArray, Frame, RobotState
 from robobt.world.features import SHOT, shot_features
-from robobt.world.field import DIVISION_B
-from robobt.world.geometry import FloatArray
-from robobt.world.state import BallState, Frame, RobotState
 
 OPPONENTS = 6
 _ROUNDS = 30

@@ -10,16 +10,11 @@ from typing import Annotated
 import numpy as np
 import typer
 
-from robobt.cli.common import Json, console, errors, print_json, table
-from robobt.sim.arenas import Arenas
-from robobt.sim.records import COMMAND, size
-from robobt.sim.settings import preset
-from robobt.sim.world import SimWorld
-from robobt.world.command import RobotCommand
-from robobt.world.field import DIVISION_A, DIVISION_B
-from robobt.world.game import Team
-from robobt.world.protocol import Placement
-from robobt.world.state import Frame, RobotId, RobotState
+from robobt.cli import Json, console, print_json, table
+from robobt.cli.common import errors
+from robobt.sim import COMMAND, Arenas, SimWorld, preset
+from robobt.sim.records import size
+from robobt.world import DIVISION_A, DIVISION_B, Frame, Placement, RobotCommand, RobotId, RobotState, Team
 
 CASES = {"one_v_one": 1, "six_v_six": 6, "eleven_v_eleven": 11}
 """Keys of the benchmark's result and robots a team."""

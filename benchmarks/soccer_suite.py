@@ -20,7 +20,7 @@ import numpy as np
 from robobt import load_policy
 from robobt.cli.common import parse_assignments
 from robobt.cli.option_groups.scenario import parse_play
-from robobt.learning.envs import run_starts
+from robobt.learning import run_starts
 from robobt.learning.envs.episodes import Episodes
 from robobt.learning.envs.soccer.settings import SoccerSettings
 from robobt.learning.envs.soccer.suite import SUITE, against, instead, scripted

@@ -8,7 +8,7 @@ import numpy as np
 import typer
 
 from benchmarks.simulated_tests import simulate
-from robobt.cli.common import MAX_SEED, Json, Progress, console, print_json, say, table
+from robobt.cli import MAX_SEED, Json, Progress, console, print_json, say, table
 from robobt.config.extras import need
 from robobt.tournament.sequential import SequentialTest
 

@@ -10,18 +10,14 @@ from typing import Annotated
 import numpy as np
 import typer
 
-from robobt.cli.common import Json, Progress, print_json, say
-from robobt.match import load_scenario
-from robobt.match.runner import trial_seed
-from robobt.tournament.entrants import read_entrant
+from robobt.cli import Json, Progress, print_json, say
+from robobt.match import load_scenario, trial_seed
+from robobt.tournament import Plan, play_tournament, read_entrant, standings_of
 from robobt.tournament.fixtures import Fixture
 from robobt.tournament.job import Failure, Job
-from robobt.tournament.plan import Plan
-from robobt.tournament.play import play_tournament
 from robobt.tournament.played import PlayedMatch, SideResult
-from robobt.tournament.standings import standings_of
 from robobt.tournament.store import MatchStore
-from robobt.world.game import Team
+from robobt.world import Team
 
 
 class MadeUp(Job):

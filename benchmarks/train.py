@@ -11,15 +11,16 @@ from typing import Annotated
 import typer
 from rich.markup import escape
 
-from robobt.cli.common import Json, console, errors, parse_assignments, print_json, table
-from robobt.cli.outputs import make_folders
+from robobt.cli import Json, console, make_folders, print_json, table
+from robobt.cli.common import errors, parse_assignments
 from robobt.config.atomic import write_atomically
 from robobt.config.errors import unknown_name
 from robobt.config.yaml import read_yaml
+from robobt.learning import TrainSettings, load_settings
 from robobt.learning.training.progress import OnProgress
 from robobt.learning.training.results import SeedSpread, SeedSummary, summary_of
 from robobt.learning.training.seeds import train_seeds
-from robobt.learning.training.settings import SettingsError, TrainSettings, load_settings
+from robobt.learning.training.settings import SettingsError
 
 SWITCHES = Path(__file__).parent / "switches.yaml"
 """The changes to the fast preset that are compared."""

@@ -19,10 +19,9 @@ import argparse
 from collections.abc import Mapping
 
 from robobt.cli.option_groups.scenario import with_teams
-from robobt.match import MatchResult, load_scenario, run_trials_in
+from robobt.match import MatchResult, Scenario, load_scenario, run_trials_in
 from robobt.match.results.compare import Difference, compare_results
 from robobt.match.scenario.changes import changed
-from robobt.match.scenario.scenario import Scenario
 from robobt.models.find import read_fitting_model
 from robobt.worlds import SIM, world_from
 

@@ -13,9 +13,9 @@ from py_trees.blackboard import Client
 from py_trees.common import Access, Status
 from py_trees.trees import BehaviourTree
 
-from robobt.cli.common import Json, errors, print_json, say
-from robobt.tree.leaf import Leaf
-from robobt.tree.runner import TreeRunner
+from robobt.cli import Json, print_json, say
+from robobt.cli.common import errors
+from robobt.tree import Leaf, TreeRunner
 
 _S, _F, _R, _I = Status.SUCCESS, Status.FAILURE, Status.RUNNING, Status.INVALID
 _BRANCHES = 7

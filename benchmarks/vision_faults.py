@@ -32,14 +32,9 @@ from robobt.league.sources import VisionSources
 from robobt.league.wire.notices import Notices
 from robobt.league.wire.senders import Address
 from robobt.league.wire.vision import BallDetection, CameraFrame, RobotDetection
-from robobt.sim.realism import REALISM
-from robobt.sim.settings import SimSettings
-from robobt.world.command import RobotCommand
-from robobt.world.field import DIVISION_B
-from robobt.world.game import Team
-from robobt.world.geometry import wrap_angle
+from robobt.sim import REALISM, SimSettings
+from robobt.world import BALL_RADIUS, DIVISION_B, Frame, RobotCommand, RobotId, Team, wrap_angle
 from robobt.world.rules import scorer
-from robobt.world.state import BALL_RADIUS, Frame, RobotId
 
 PERIOD, STARTED, WARM_UP, SECONDS = 1 / 60, 1000.0, 1.0, 6.0
 NOISE = REALISM["realistic"]
