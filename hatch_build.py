@@ -7,8 +7,8 @@ Beside it lie type stubs for editors and type checkers. Run as a script it does
 the same in place.
 
 A wheel and an sdist say from which commit they were made (``robobt/commit.txt``), for the cards of
-models that are trained with them. A wheel carries the models, but not the shots that some of them
-learned from.
+models that are trained with them. A wheel carries the models that a play, a scenario or the README names. It
+leaves out the others, and the shots that some models learned from; a clone has all.
 """
 
 from __future__ import annotations
@@ -19,6 +19,15 @@ from tempfile import TemporaryDirectory
 from typing import Any
 
 from hatchling.builders.hooks.plugin.interface import BuildHookInterface
+
+LEFT_OUT = {
+    "go_to_ball_among_robots_ppo.pt",
+    "save_ppo.pt",
+    "score_on_defender_grsim_ppo.pt",
+    "score_on_goalkeeper_grsim_ppo.pt",
+    "paper_shots.parquet",
+}
+"""Files of ``models`` that are not in a wheel; the manifest there still lists the models among them."""
 
 _FOLDER = Path("robobt/league/wire/proto")
 _DESCRIPTORS = _FOLDER / "messages.desc"
@@ -61,7 +70,7 @@ class MessagesHook(BuildHookInterface):  # type: ignore[type-arg]
         build_data["artifacts"] += [f"/{path}" for path in compile_messages(Path(self.root))]
         if self.target_name == "wheel" and version != "editable":
             for path in sorted((Path(self.root) / "models").iterdir()):
-                if path.suffix != ".parquet":
+                if path.name not in LEFT_OUT:
                     build_data["force_include"][str(path)] = f"robobt/_data/models/{path.name}"
         package = Path(self.root) / "robobt"
         commit = runpy.run_path(str(package / "config" / "commit.py"))["commit_of"](package)

@@ -13,6 +13,7 @@ from pathlib import Path
 
 import pytest
 
+from hatch_build import LEFT_OUT
 from robobt.config.commit import commit_of
 
 ROOT = Path(__file__).parent.parent
@@ -92,7 +93,8 @@ def test_it_plays_and_loads_its_models_where_nothing_else_is_installed(
     said = json.loads(clean.run("robobt", "list", "models", "--json").stdout)
     listed = said["models"]
     assert said["problems"] == []
-    assert {model["card"]["name"] for model in listed} == {path.stem for path in ROOT.glob("models/*.pt")}
+    shipped = {path.stem for path in ROOT.glob("models/*.pt") if kind == "sdist" or path.name not in LEFT_OUT}
+    assert {model["card"]["name"] for model in listed} == shipped
     if sys.version_info[:2] != tuple(map(int, version.split("."))):
         return  # of the PyTorch of other versions several gigabytes may be fetched
     clean.install("torch")
@@ -122,6 +124,27 @@ def test_it_carries_types_scenarios_and_models(unpacked: Path) -> None:
     assert not (unpacked / "tests").exists()
     for needless in ("*.parquet", "*.proto"):
         assert not list(unpacked.rglob(needless))
+
+
+def test_it_leaves_out_no_model_that_the_package_or_the_readme_names() -> None:
+    files = [ROOT / "README.md", *ROOT.rglob("robobt/**/*.py"), *ROOT.rglob("examples/**/*.*")]
+    texts = "".join([path.read_text("utf-8") for path in files if path.suffix in (".md", ".py", ".yaml")])
+    assert [name for name in LEFT_OUT if Path(name).stem in texts and name.endswith(".pt")] == []
+    assert all((ROOT / "models" / name).is_file() for name in LEFT_OUT)
+
+
+@pytest.mark.integration
+def test_it_says_where_a_model_is_that_it_leaves_out(unpacked: Path, tmp_path: Path) -> None:
+    models = {path.name for path in (unpacked / "robobt" / "_data" / "models").glob("*.pt")}
+    assert models == {path.name for path in ROOT.glob("models/*.pt")} - LEFT_OUT
+    load = "from robobt import RobobtError, load_policy\ntry: load_policy('save_ppo')\n"
+    said = run(unpacked, tmp_path, load + "except RobobtError as error: print(error)")
+    assert "'save_ppo' is not installed: it is in the folder models of robobt's repository" in said
+    listed = run(unpacked, tmp_path, "from robobt.cli import app; app(['list', 'models', '--json'])")
+    assert json.loads(listed)["problems"] == []
+    show = "import sys\nsys.stderr = sys.stdout\nfrom robobt.cli import app\n"
+    shown = run(unpacked, tmp_path, show + "app(['show', 'save_ppo'], standalone_mode=False)")
+    assert shown == f"robobt: {said}"
 
 
 @pytest.mark.integration

@@ -139,7 +139,7 @@ def _kind_of(name: str) -> ThingKind:
     if (of_file := _kind_of_file(file)) is not None:
         return of_file
     from robobt.config.resources import bundled_scenarios
-    from robobt.models.file import ModelError
+    from robobt.models.file import ModelError, UnknownModelError
     from robobt.models.find import find_model
 
     play = name.partition(":")[0]
@@ -152,8 +152,11 @@ def _kind_of(name: str) -> ThingKind:
     try:
         find_model(name)
         found.append(ThingKind.MODEL)
-    except ModelError:
+    except UnknownModelError:
         pass
+    except ModelError:
+        # The error is reported where the model is shown, unless the name is another thing's.
+        found = found or [ThingKind.MODEL]
     if len(found) > 1:
         there = f"{name!r} is a {' and a '.join(found)}; choose with --kind"
         raise typer.BadParameter(there, param_hint="NAME")

@@ -10,7 +10,14 @@ from pathlib import Path
 from robobt.config.errors import close_names
 from robobt.config.resources import models_folder
 from robobt.models.card import Kind
-from robobt.models.file import SUFFIXES, ModelError, ModelFile, UnknownModelError, read_model_file
+from robobt.models.file import (
+    SUFFIXES,
+    ModelError,
+    ModelFile,
+    UnknownModelError,
+    read_manifest,
+    read_model_file,
+)
 from robobt.world.features import ObservationSpec
 
 _ENDINGS = tuple(SUFFIXES.values())
@@ -24,7 +31,8 @@ def find_model(name_or_path: str | Path) -> Path:
 
     Raises:
         UnknownModelError: there is no model with that name.
-        ModelError: there are several, and they are not the same; or it names a file of another kind.
+        ModelError: this installation leaves it out; there are several, and they are not the same; or it names
+            a file of another kind.
     """
     text = str(name_or_path)
     if isinstance(name_or_path, Path) or is_path(text):
@@ -43,6 +51,12 @@ def find_model(name_or_path: str | Path) -> Path:
         return path
     if Path(text).is_file():
         raise ModelError(f"{text!r} is not a model file: model files end in {' or '.join(_ENDINGS)}")
+    shipped, *_ = folders
+    if any(f"{text}{suffix}" in read_manifest(shipped) for suffix in SUFFIXES.values()):
+        raise ModelError(
+            f"the model {text!r} is not installed: it is in the folder models of robobt's repository; "
+            "copy its file into a folder models here, or give its path"
+        )
     there = sorted({path.stem for folder in folders for path in list_models(folder)})
     meant = close_names(text, there)
     guess = f"did you mean {' or '.join(meant)}? " if meant else ""
