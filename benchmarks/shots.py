@@ -13,9 +13,16 @@ import torch
 import typer
 from numpy.typing import NDArray
 
-from paper.predictors import paper_features
 from robobt.cli import Json, Progress, print_json, say
-from robobt.shots import FOLDS, NetworkClassifier, goals, load_shot_sets, shot_inputs, stratified_folds
+from robobt.shots import (
+    FOLDS,
+    NetworkClassifier,
+    goals,
+    load_shot_sets,
+    pair_features,
+    shot_inputs,
+    stratified_folds,
+)
 from robobt.skills import NNFiltered, goal_candidates
 from robobt.skills.aim.raters.goal_line import obstacles
 from robobt.skills.aim.raters.shot_predictor import shot_predictor
@@ -49,7 +56,7 @@ def bench_cross_validation(
     of the folds to train, 100 being ten times ten. ``progress`` is called after every network of the loop.
     """
     torch.set_num_threads(1)
-    inputs = paper_features(scenes)
+    inputs = pair_features(scenes) * [1.0, 1e3, 1e3, 1e3, 1e3]  # the paper's network sees millimetres
     folds = stratified_folds(labels, -(-networks // FOLDS))[:networks]
     sets = [(inputs[train], labels[train]) for train, _ in folds]
     begin = process_time()
