@@ -24,6 +24,7 @@ COMMANDS = {
     "engines": "engines:engines",
     "tournament": "tournament:tournament",
     "train": "train:train",
+    "degradation": "degradation:command",
     "filter": "filter:filter_",
     "chips": "chips:chips",
     "clock": "clock:clock",

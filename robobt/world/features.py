@@ -21,6 +21,7 @@ import numpy as np
 from robobt.world.avoiding import GO_TO_BALL_AMONG_ROBOTS
 from robobt.world.compiled import compiled, compiled_lean, record_dtype
 from robobt.world.geometry import FloatArray, wrap_angle
+from robobt.world.memory import memory_of, with_memory
 from robobt.world.observation import (
     OWN_OBSERVATIONS,
     Row,
@@ -138,10 +139,14 @@ OBSERVATIONS = {
 
 
 def find_observation(name: str) -> ObservationSpec | None:
-    """Return the observation of that name, including those of robots in a team, or None."""
+    """Return the observation of that name, or None; also those of robots in a team, and with a memory."""
     places = places_of(name)
     if places is not None:
         return team_view(*places)
+    memory = memory_of(name)
+    if memory is not None:
+        base = find_observation(memory.base)
+        return None if base is None else with_memory(base, memory)
     return OBSERVATIONS.get(name) or OWN_OBSERVATIONS.get(name)
 
 

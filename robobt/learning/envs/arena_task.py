@@ -17,7 +17,7 @@ from robobt.learning.envs.judging import Ledger, count, goals
 from robobt.learning.envs.perception import Perception
 from robobt.learning.envs.progress import PROGRESS, progress_at
 from robobt.learning.envs.randomiser import Randomiser
-from robobt.learning.envs.settings import TaskSettings
+from robobt.learning.envs.settings import MemorySettings, TaskSettings
 from robobt.learning.envs.starts import START_COLUMNS, StartPool, check_starts, columns_of, split
 from robobt.learning.envs.task import BoolArray, EpisodeEnds, FloatArray, IntArray, StepResult
 from robobt.learning.envs.tick import Tick, call, checked_starts, checked_terms, end_by, error_of
@@ -28,6 +28,7 @@ from robobt.skills.base import Skill
 from robobt.world.compiled import numbers_of
 from robobt.world.features import ObservationSpec
 from robobt.world.limits import RobotLimits
+from robobt.world.memory import Memory, MemorySize, with_memory
 from robobt.world.observation import Observation, Seen, seen
 from robobt.world.records import BALL
 
@@ -59,7 +60,8 @@ class ArenaTask:
         central: whether a central critic can be used.
         terms: record type of the reward's terms, one number each.
         arenas: the simulator, from the first ``reset`` on.
-        observation: specification of the observation.
+        observation: specification of the observation, with its memory.
+        seen_size: number of its entries without the memory.
         robots: number of robots in an arena; a start's first columns are their states.
         blue: number of robots in the learner's team, which come first.
         learners: indices of the robots that learn.
@@ -114,10 +116,21 @@ class ArenaTask:
         self.settings = settings
         self.n = n
         self.action = settings.action
+        self.seen_size = self.observation.size
+        self._memory_size: MemorySize | None = None
+        if settings.memory != MemorySettings():
+            if len(self.learners) > 1:
+                raise ValueError(f"{type(self).__name__}: memory is for tasks with one learner")
+            actions, seen = settings.memory.actions, settings.memory.observations
+            self._memory_size = MemorySize(self.observation.name, actions, self.action.size, seen)
+            self._made = self.observation
+            self.observation = with_memory(self.observation, self._memory_size)
         self.observation_size = len(self.learners) * self.observation.size
         self.action_size = len(self.learners) * self.action.size
         self.ended: Episodes | None = None
         self.arenas: Arenas
+        self._memory: Memory | None
+        self._last_seen: FloatArray
         self._scaling = numbers_of(self.action)
         self._kind = self.action.drives, self.action.kicks
         self._seed: int | None = seed
@@ -128,7 +141,7 @@ class ArenaTask:
         judged_by = next(kind for kind in type(self).__mro__ if "_judge" in vars(kind))
         self._own_reward = type(self).reward is not judged_by.__dict__.get("reward", ArenaTask.reward)
         self._own_observations = not type(self).observe.__module__.startswith("robobt.") or isinstance(
-            self.observation, Observation
+            self.observation if self._memory_size is None else self._made, Observation
         )
         self._own_opponents = not type(self).oppose.__module__.startswith("robobt.")
         self._own_ends = type(self).ends is not judged_by.__dict__.get("ends", ArenaTask.ends)
@@ -142,13 +155,14 @@ class ArenaTask:
 
     def observe(self, robots: FloatArray, balls: FloatArray) -> FloatArray:
         """Compute the observations (m, O) of robots (m, R, 6) and balls (m, 4)."""
-        if not isinstance(self.observation, Observation):
+        maker = self.observation if self._memory_size is None else self._made
+        if not isinstance(maker, Observation):
             raise NotImplementedError(f"{type(self).__name__}: nothing makes its observation")
         made: FloatArray = np.asarray(
-            self.observation.rows(seen(robots, balls, self.blue, self.settings.field)), dtype=np.float64
+            maker.rows(seen(robots, balls, self.blue, self.settings.field)), dtype=np.float64
         )
-        if made.shape != (len(balls), self.observation.size):
-            raise ValueError(f"makes {made.shape} of {(len(balls), self.observation.size)}")
+        if made.shape != (len(balls), self.seen_size):
+            raise ValueError(f"makes {made.shape} of {(len(balls), self.seen_size)}")
         if not np.isfinite(made).all():
             entry = self.observation.entries[int(np.flatnonzero(~np.isfinite(made).all(axis=0))[0])]
             raise ValueError(f"the entry {entry.name!r} is not finite")
@@ -383,6 +397,9 @@ class ArenaTask:
             if tick == last or self._perception.follows:
                 final = self._perception.look(self.arenas.robots, self.arenas.balls)
         self._announce(final, self._all)
+        if self._memory is not None:
+            self._memory.remember(self._last_seen, given)
+            self._last_seen, final = final.copy(), self._memory.recall(final)
         self._rewards = rewards
         self.ended = self._collect(np.flatnonzero(ends.over), ends) if ended else None
         return StepResult(final.copy(), rewards, ends.terminated, ends.truncated, final, ends.success)
@@ -454,7 +471,11 @@ class ArenaTask:
             partial(checked_starts, self, len(self.start_columns)), self._start_rngs, len(self.start_columns)
         )
         observe = partial(call, self, "observe") if self._own_observations else self.observe
-        self._perception = Perception(settings, observe, self.observation_size, robots, self._noise_rngs)
+        self._last_seen = np.zeros((n, len(self.learners) * self.seen_size))
+        self._memory = None
+        if self._memory_size is not None:
+            self._memory = Memory(self._memory_size, self.seen_size, n)
+        self._perception = Perception(settings, observe, self._last_seen.shape[1], robots, self._noise_rngs)
         self._randomiser = Randomiser(settings, self.arenas, self._parameter_rngs)
         self._commands = np.zeros((n, robots, size(COMMAND)))
         self._filled = np.zeros((n * len(self.learners), size(COMMAND)))
@@ -478,6 +499,10 @@ class ArenaTask:
         self._optimal_time[which] = self._optimum(rows, which)
         seen = self._perception.start(self.arenas.robots, self.arenas.balls, which)
         self._announce(seen, which)
+        if self._memory is not None:
+            self._last_seen[which] = seen
+            self._memory.begin(seen, which)
+            seen = self._memory.recall(seen, which)
         return seen
 
     def _collect(self, which: IntArray, ends: EpisodeEnds) -> Episodes:

@@ -78,6 +78,13 @@ class NoiseSettings(Settings):
     turn_rate: float = Field(0.0, ge=0, le=5, description="of omega, on top of a true one [rad/s]")
 
 
+class MemorySettings(Settings):
+    """What a policy observes of the past, so that it can tell how its robot answers; for one learner."""
+
+    actions: int = Field(0, ge=0, le=32, description="past actions, the latest first")
+    observations: int = Field(0, ge=0, le=32, description="past observations, the latest first")
+
+
 class RandomisationSettings(OrderedSettings):
     """Domain randomisation: each parameter is drawn uniformly from its range at the start of an episode.
 
@@ -136,6 +143,7 @@ class TaskSettings(OrderedSettings):
         "true", description="the bodies' own velocities, or differences of two observed positions, 0 at first"
     )
     noise: NoiseSettings = NoiseSettings()
+    memory: MemorySettings = MemorySettings()
     latency: int = Field(0, ge=0, le=20, description="age of observations [ticks]")
     randomisation: RandomisationSettings = RandomisationSettings()
 

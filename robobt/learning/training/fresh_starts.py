@@ -55,7 +55,7 @@ def best_seed(folder: Path) -> Path:
 
 
 def judge(
-    environment: TaskSettings, policies: Mapping[str, Policy], starts: int, seed: int
+    environment: TaskSettings, policies: Mapping[str, Policy], starts: int, seed: int, teachers: bool = True
 ) -> dict[str, Evaluation]:
     """Play each policy once from each start, and the task's script and skill where it has them.
 
@@ -64,6 +64,7 @@ def judge(
         policies: by name; each maps observations (n, O) to actions (n, A).
         starts: how many, drawn from ``seed``.
         seed: of starts, noise and randomisation; training uses none below 2**62.
+        teachers: whether the task's script and skill play too.
 
     Returns:
         Results by name: the policies', then those of "skill" and "script".
@@ -76,7 +77,7 @@ def judge(
     players: dict[str, Callable[[ArenaTask], Policy]] = {}
     for name, policy in policies.items():
         players[name] = lambda task, policy=policy: task.jointly(policy)  # type: ignore[misc]
-    for name, teacher in TEACHERS.items():
+    for name, teacher in TEACHERS.items() if teachers else ():
         players[name] = lambda task, teacher=teacher: playing(task, teacher(task))  # type: ignore[misc]
     found = {}
     for name, player in players.items():

@@ -117,7 +117,8 @@ def script(task: ArenaTask) -> Teacher:
     found = task.script()
     if found is None:
         raise _nobody(task)
-    return _Script(found)
+    forgetful = found
+    return _Script(lambda observation: forgetful(observation[:, : task.seen_size]))
 
 
 def skill(task: ArenaTask) -> Teacher:

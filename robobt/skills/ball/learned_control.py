@@ -10,6 +10,8 @@ from math import inf, isnan
 from pathlib import Path
 from typing import TypeVar
 
+import numpy as np
+
 from robobt.config.errors import RobobtError
 from robobt.config.resources import models_folder
 from robobt.models.actions import command_of
@@ -34,6 +36,7 @@ from robobt.world.features import (
     shoot_of,
 )
 from robobt.world.geometry import FloatArray
+from robobt.world.memory import Memory, MemorySize, memory_of
 from robobt.world.observation import OWN_OBSERVATIONS
 from robobt.world.scoring import SCORE_ON_GOALKEEPER, score_on_goalkeeper_of
 from robobt.world.sketch import Sketch
@@ -51,6 +54,9 @@ OBSERVERS: Mapping[str, Callable[[Frame, RobotState], FloatArray]] = {
 
 P = TypeVar("P")
 
+_EARLIEST = 0.004
+"""How much earlier than a period of its training a decision may follow another to be remembered [s]."""
+
 _shipped: dict[Path, ModelFile] = {}
 """Shipped models in use. Their networks are loaded at the first decision, so most processes need no torch."""
 
@@ -66,7 +72,10 @@ class PolicyError(RobobtError, RuntimeError):
 
 
 class LearnedControl:
-    """A trained policy that decides one robot's command, tick by tick. It has no memory.
+    """A trained policy that decides one robot's command, tick by tick.
+
+    If its observation has a memory, that holds what was seen and done at the last decisions a period of its
+    training apart; a longer pause makes it forget.
 
     The network of a shipped model is loaded at its first decision, or by :func:`load_shipped_policies`; any
     other model is loaded at once, so that its errors are reported before anything moves.
@@ -92,7 +101,8 @@ class LearnedControl:
         if self.card.kind != "policy" or self.card.action is None:
             raise ModelError(f"{file.path}: is a {self.card.kind.replace('_', ' ')}, not a policy")
         name = self.card.observation.name
-        observe = observer_of(name)
+        memory = memory_of(name)
+        observe = observer_of(name if memory is None else memory.base)
         if observe is None:
             there = ", ".join(OBSERVERS)
             raise ModelError(
@@ -103,6 +113,7 @@ class LearnedControl:
         self._observe: Callable[..., FloatArray] = observe
         places = places_of(name)
         self.minds_kicker = places is not None and places.told > 1
+        self._memory_size, self._memory = memory, None if memory is None else _Recollection(memory)
         self._infer: Callable[[FloatArray], list[float]] | None = None
         self._scaling = self.card.action
         if file.path.parent.resolve() == models_folder().resolve():
@@ -130,7 +141,11 @@ class LearnedControl:
             if self._infer is None:
                 self._infer = load_policy(self._file).single()
             observed = self._observe(frame, me, barred=True) if barred else self._observe(frame, me)
+            if self._memory is not None:
+                observed = self._memory.recall(observed, frame.time, self.card.period or frame.period)
             action = self._infer(observed)
+            if self._memory is not None:
+                self._memory.act(action)
         except ModelError as error:
             raise PolicyError(str(error)) from error
         if sketch is not None and sketch.wants(OBSERVATION):
@@ -141,6 +156,11 @@ class LearnedControl:
                 raise PolicyError(f"the policy {self.card.name} answers {said}")
         return command_of(action, self._scaling)
 
+    def forget(self) -> None:
+        """Forget what was seen and done before."""
+        if self._memory_size is not None:
+            self._memory = _Recollection(self._memory_size)
+
     def _draw(self, sketch: Sketch, observed: FloatArray, action: list[float]) -> None:
         spec = find_observation(self.card.observation.name)
         assert spec is not None
@@ -148,6 +168,35 @@ class LearnedControl:
             sketch.number(OBSERVATION, entry.name, value)
         for place, value in enumerate(action):
             sketch.number(OBSERVATION, f"action {place}", value)
+
+
+class _Recollection:
+    """What one robot remembers of its decisions."""
+
+    def __init__(self, size: MemorySize) -> None:
+        self._size = size
+        self._memory: Memory | None = None
+        self._latest: tuple[float, FloatArray, list[float]] | None = None
+        self._now = 0.0
+        self._seen = np.zeros((1, 0))
+
+    def recall(self, seen: FloatArray, time: float, period: float) -> FloatArray:
+        """Return what is seen at a time [s] followed by what is remembered, decisions a period apart [s]."""
+        self._seen, self._now = seen[None], time
+        if self._memory is None or self._latest is None or not 0.0 <= time - self._latest[0] < 2.5 * period:
+            self._memory, self._latest = Memory(self._size, len(seen)), None
+            self._memory.begin(self._seen, slice(None))
+        elif time - self._latest[0] > period - _EARLIEST:
+            _, before, action = self._latest
+            self._memory.remember(before, np.array([action]))
+            self._latest = None
+        row: FloatArray = self._memory.recall(self._seen)[0]
+        return row
+
+    def act(self, action: list[float]) -> None:
+        """Note what was decided upon what was recalled last."""
+        if self._latest is None:
+            self._latest = self._now, self._seen, action
 
 
 def load_shipped_policies() -> None:
@@ -182,6 +231,7 @@ class PacedControl:
     def restart(self) -> None:
         """Forget the last decision."""
         self._decided = -inf
+        self._control.forget()
 
     def decide(
         self, frame: Frame, me: RobotState, sketch: Sketch | None = None, team: TeamStore | None = None

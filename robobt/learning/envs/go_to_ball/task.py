@@ -106,7 +106,7 @@ class GoToBallTask(ArenaTask):
         """See :attr:`observation`."""
         if self.robots > 1:
             return among_robots_rows(robots, balls)
-        return go_to_ball_rows(robots[:, 0], balls, self.settings.field.half_length, self.observation_size)
+        return go_to_ball_rows(robots[:, 0], balls, self.settings.field.half_length, self.seen_size)
 
     @property
     def ranges(self) -> dict[str, float]:

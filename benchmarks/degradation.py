@@ -1,0 +1,115 @@
+"""How skills hold where robot and field differ from those of training: delay, kicks, dribbler, simulators."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Annotated, Any
+
+import typer
+from rich.markup import escape
+
+from robobt.cli.common import MAX_SEED, Json, console, errors, print_json, table
+from robobt.learning.agents.networks import one_thread
+from robobt.learning.envs import TaskSettings, make_task
+from robobt.learning.training.evaluation import Evaluation
+from robobt.learning.training.fresh_starts import judge, trained_policy
+
+CELLS: dict[str, dict[str, Any]] = {
+    "as trained": {},
+    "+60 ms": {"delay": 0.06},
+    "+100 ms": {"delay": 0.1},
+    "kicks x 0.7": {"randomisation": {"kick_speed": (0.7, 0.7)}},
+    "kicks x 1.3": {"randomisation": {"kick_speed": (1.3, 1.3)}},
+    "dribbler x 0.5": {"randomisation": {"dribbler": (0.5, 0.5)}},
+    "default": {"simulator": "default"},
+    "grsim": {"simulator": "grsim"},
+    "erforce": {"simulator": "erforce"},
+    "sumatra": {"simulator": "sumatra"},
+    "rsim": {"simulator": "rsim"},
+    "realistic": {"noise": {"robot_position": 0.0013, "ball_position": 0.0014, "heading": 0.01}},
+}
+"""Changes to the training environment by cell. ``delay`` is the whole delay beyond that of training [s];
+all randomisation of training is off, except for its delay's least value."""
+
+
+def cell_environment(environment: TaskSettings, changes: Mapping[str, Any]) -> TaskSettings:
+    """Return the environment of a cell: that of training without its randomisation, and changed."""
+    data = environment.model_dump()
+    least = environment.randomisation.control_delay[0]
+    delay = least + float(changes.get("delay", 0.0))
+    data["randomisation"] = {"control_delay": (delay, delay), **changes.get("randomisation", {})}
+    for name in ("simulator", "noise"):
+        if name in changes:
+            data[name] = changes[name]
+    if "simulator" in changes:
+        # Robots are the simulator's own, as far as the policy commands them.
+        data["limits"] = None
+    return type(environment).model_validate(data)
+
+
+def degradation(
+    sources: Sequence[str], starts: int, seed: int, cells: Sequence[str] = ()
+) -> dict[str, dict[str, Evaluation]]:
+    """Return results by cell and player: each policy in its own environment, script and skill in the first's.
+
+    Args:
+        sources: runs or models of one task.
+        starts: of each cell.
+        seed: of starts and noise.
+        cells: names of :data:`CELLS`; all if empty.
+    """
+    found: dict[str, dict[str, Evaluation]] = {}
+    policies = {source: trained_policy(source) for source in sources}
+    for name, changes in CELLS.items():
+        if cells and name not in cells:
+            continue
+        results: dict[str, Evaluation] = {}
+        for source, (environment, policy) in policies.items():
+            judged = judge(
+                cell_environment(environment, changes), {source: policy}, starts, seed, not results
+            )
+            results = {**results, source: judged.pop(source), **judged}
+        found[name] = results
+    return found
+
+
+def command(
+    runs: Annotated[list[str], typer.Argument(help="Folders of runs, or models, all of one task.")],
+    starts: Annotated[int, typer.Option("--starts", min=1)] = 200,
+    seed: Annotated[int, typer.Option("--seed", min=0, max=MAX_SEED)] = 0,
+    cells: Annotated[list[str] | None, typer.Option("--only", help="A cell's name.")] = None,
+    as_json: Json = False,
+) -> None:
+    """Print how often policies, the script and the skill succeed in each cell, with 95 % Wilson intervals.
+
+    Keys of --json: task, starts, seed; cells, by name and player: success, low, high, mean_time (seconds).
+    """
+    with one_thread(), errors.status("playing"):
+        found = degradation(runs, starts, seed, cells or ())
+        task = make_task(trained_policy(runs[0])[0], 1).name
+    if as_json:
+        figures = {
+            cell: {
+                name: {
+                    "success": one.rate,
+                    "low": one.interval.low,
+                    "high": one.interval.high,
+                    "mean_time": one.mean_time,
+                }
+                for name, one in results.items()
+            }
+            for cell, results in found.items()
+        }
+        print_json({"task": task, "starts": starts, "seed": seed, "cells": figures})
+        return
+    names = list(dict.fromkeys(name for results in found.values() for name in results))
+    shown = table("cell", *map(escape, names))
+    for cell, results in found.items():
+        row = []
+        for name in names:
+            one = results.get(name)
+            row.append(
+                "-" if one is None else f"{one.rate:.1%} ({one.interval.low:.0%} to {one.interval.high:.0%})"
+            )
+        shown.add_row(cell, *row)
+    console.print(shown)
