@@ -14,6 +14,9 @@ from robobt.sim.records import Body, Command, Followed, Parameters, SimulatedBal
 from robobt.world.compiled import compiled_lean
 from robobt.world.records import Limits
 
+_ARRIVED = 1e-9
+"""Difference from a command below which it is followed exactly [m/s, rad/s]."""
+
 _ROUNDING_SHARE = 1.0 - 1e-9
 """Tolerance, so that rounding does not exaggerate a change of velocity."""
 
@@ -21,21 +24,18 @@ _ROUNDING_SHARE = 1.0 - 1e-9
 @compiled_lean
 def follow(followed: Followed, command: Command, limits: Limits, dt: float) -> None:
     """Let a robot's controller follow its command with the lag of each axis."""
-    followed.vx += _caught_up(limits.lag, dt) * (command.vx - followed.vx)
-    followed.vy += _caught_up(limits.side_lag, dt) * (command.vy - followed.vy)
-    followed.omega += _caught_up(limits.turn_lag, dt) * (command.omega - followed.omega)
-    if limits.lag <= 0.0:
-        followed.vx = command.vx
-    if limits.side_lag <= 0.0:
-        followed.vy = command.vy
-    if limits.turn_lag <= 0.0:
-        followed.omega = command.omega
+    followed.vx = _nearer(followed.vx, command.vx, limits.lag, dt)
+    followed.vy = _nearer(followed.vy, command.vy, limits.side_lag, dt)
+    followed.omega = _nearer(followed.omega, command.omega, limits.turn_lag, dt)
 
 
 @compiled_lean
-def _caught_up(lag: float, dt: float) -> float:
-    """Return the share of a difference that a first-order lag makes up in ``dt``."""
-    return 1.0 - exp(-dt / lag) if lag > 0.0 else 1.0
+def _nearer(value: float, target: float, lag: float, dt: float) -> float:
+    """Return a value that approaches its target for ``dt`` with a first-order lag."""
+    # It arrives: a speed of 1e-310 has no direction that wheels could take.
+    if lag <= 0.0 or abs(value - target) < _ARRIVED:
+        return target
+    return target + (value - target) * exp(-dt / lag)
 
 
 @compiled_lean

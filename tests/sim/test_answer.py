@@ -180,3 +180,14 @@ def test_kicks_spread_about_their_command_as_the_seed_has_it() -> None:
     spread = (sum((speed - mean) ** 2 for speed in once) / len(once)) ** 0.5
     assert mean == pytest.approx(4.0, rel=0.03)
     assert spread == pytest.approx(0.2, rel=0.35)
+
+
+def test_a_robot_on_wheels_that_lags_comes_to_rest_and_stays_finite() -> None:
+    own = preset("grsim").limits.model_copy(update={"lag": 0.01, "side_lag": 0.01, "turn_lag": 0.01})
+    world = one_robot("grsim", limits=own, period=1 / 60)
+    for tick in range(700):
+        world.act({ME: RobotCommand(1.0, 0.5, 2.0) if tick < 20 else RobotCommand()})
+    me = world.truth().own[0]
+    assert me.speed < 1e-3
+    world.act({ME: RobotCommand(1.0)})
+    assert all(abs(value) < 10.0 for value in (me.x, me.y, me.vx, me.vy, me.omega))
