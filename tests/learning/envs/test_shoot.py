@@ -302,3 +302,15 @@ def test_a_speed_at_which_no_robot_stops_in_time_is_an_error() -> None:
     starts = {"robot_speed": (9.0, 10.0), "robot_x": (1.0, 1.1), "robot_y": (0.0, 0.1)}
     with pytest.raises(ValueError, match="do not stop inside"):
         ShootTask(ShootSettings.model_validate({"starts": starts})).reset()
+
+
+def test_a_gentle_robot_turns_no_faster_than_its_dribbler_holds_the_ball() -> None:
+    lost = {}
+    for gentle in (False, True):
+        task = ShootTask(ShootSettings(gentle=gentle), n=16)
+        task.reset(seed=0)
+        for _ in range(40):
+            task.step(np.tile((1.0, -1.0), (16, 1)))
+        lost[gentle] = int((~task.arenas.contact[:, 0]).sum())
+    # At 10 rad/s the default dribbler loses every ball, at the 5.6 rad/s that it bears it loses none.
+    assert lost == {False: 16, True: 0}

@@ -37,6 +37,9 @@ class ShootSettings(TaskSettings):
         ShootReward(), description="a reward by name (coded, printed, cmu, sparse) or its weights"
     )
     starts: ShootStarts = ShootStarts()
+    gentle: bool = Field(
+        False, description="turn and brake only as hard as the dribbler holds the ball, as the skill does"
+    )
     lost_distance: float | None = Field(
         None, gt=0.1, le=10, description="an unkicked ball farther away than this ends the episode [m]"
     )

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from functools import partial
-from math import hypot
+from math import hypot, sqrt
 from typing import Protocol
 
 import numpy as np
@@ -26,6 +26,7 @@ from robobt.learning.envs.shoot.rewards import ShootReward, ShootTerms, reward
 from robobt.learning.envs.shoot.settings import ShootSettings
 from robobt.learning.envs.shoot.starts import shoot_starts
 from robobt.learning.envs.task import EpisodeEnds, FloatArray
+from robobt.sim.records import COMMAND
 from robobt.skills.ball.kick_to_target import KickToTarget
 from robobt.skills.base import Skill
 from robobt.world.compiled import compilable, compiled_lean, record_dtype
@@ -33,7 +34,7 @@ from robobt.world.features import SHOOT, ObservationSpec, shoot_rows
 from robobt.world.field import FieldGeometry
 from robobt.world.records import BALL, ROBOT, Ball, Robot
 from robobt.world.rules import in_area, is_out
-from robobt.world.state import ROBOT_RADIUS
+from robobt.world.state import ROBOT_RADIUS, TOUCH_DISTANCE
 
 _HOLDING_SHARE = 0.9
 """Share of the dribbler's holding force that the script uses for turning."""
@@ -90,6 +91,23 @@ class ShootTask(ArenaTask):
     def observe(self, robots: FloatArray, balls: FloatArray) -> FloatArray:
         """See :data:`robobt.world.features.SHOOT`."""
         return shoot_rows(robots[:, 0], balls, *self._goal)
+
+    def _carried(self) -> FloatArray:
+        """Return the commands, gentler if the settings say so, as :class:`robobt.skills.Shoot` gives them."""
+        commands = super()._carried()
+        if not self.settings.gentle:
+            return commands
+        held, period = self.settings.robot_limits.hold_acceleration, self.settings.period
+        gentle = commands.copy()
+        rows, robots = gentle.view(COMMAND)[:, 0, 0], self.arenas.robots.view(ROBOT)[:, 0, 0]
+        fastest = sqrt(held / TOUCH_DISTANCE)
+        rows["omega"] = np.clip(rows["omega"], -fastest, fastest)
+        speed = np.hypot(robots["vx"], robots["vy"])
+        left = np.where(speed > held * period, 1.0 - held * period / np.maximum(speed, 1e-9), 0.0)
+        c, s = np.cos(robots["heading"]), np.sin(robots["heading"])
+        rows["vx"] = left * (c * robots["vx"] + s * robots["vy"])
+        rows["vy"] = left * (c * robots["vy"] - s * robots["vx"])
+        return gentle
 
     @property
     def ranges(self) -> dict[str, float]:
