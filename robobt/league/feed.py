@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import select
+from collections import deque
 from collections.abc import Callable, Mapping
 from contextlib import ExitStack
 
@@ -25,6 +26,9 @@ from robobt.world.game import OPEN_PLAY, GameState
 from robobt.world.geometry import Point
 from robobt.world.limits import RobotLimits
 from robobt.world.state import Frame, RobotId
+
+_MOST_SEEN = 64
+"""Number of camera frames that are kept for records."""
 
 ALL_CAMERAS = 0.002
 """How long a frame waits for those of the other cameras [s]."""
@@ -65,6 +69,7 @@ class Feed:
         known: knowledge of the field that is kept between worlds.
         picture: the check that robots move as commanded.
         referee: the game controller's state, None without one.
+        seen: the newest camera frames that were used, in world coordinates.
     """
 
     def __init__(
@@ -78,6 +83,7 @@ class Feed:
     ) -> None:
         self.connection = connection
         self.known = known or KnownField(connection.speed)
+        self.seen: deque[CameraFrame] = deque(maxlen=_MOST_SEEN)
         self._expected = field if connection.geometry == "scenario" else None
         self.filter = VisionFilter(self.known.field or field or DIVISION_B, settings, limits)
         self.frames = 0
@@ -215,8 +221,10 @@ class Feed:
         came = self.now() - (self._clock() - arrived) * self.rate
         self._camera_clocks.align(frame, came)
         there = known.clock.at(arrived)
-        if not self.filter.add(frame if self.sign() > 0.0 else frame.turned(), there):
+        seen = frame if self.sign() > 0.0 else frame.turned()
+        if not self.filter.add(seen, there):
             return
+        self.seen.append(seen)
         self.frames += 1
         self.heard = came
         self.picture.see(frame, came)

@@ -24,6 +24,7 @@ from robobt.match.referee.events import RefereeEvent
 from robobt.signals import uninterrupted
 from robobt.sim.settings import SimSettings
 from robobt.world.command import KickTrigger, RobotCommand
+from robobt.world.detections import Detections
 from robobt.world.field import FieldGeometry
 from robobt.world.limits import RobotLimits
 from robobt.world.placement import check_inside, check_placement
@@ -191,6 +192,17 @@ class LeagueWorld(World, Closing):
     def seen_kicks(self) -> list[tuple[RobotId, float]]:
         """Return who was seen to kick during the last act, and when; see the protocol."""
         return self._kicks
+
+    def detections(self) -> list[Detections]:
+        """See :meth:`robobt.world.World.detections`."""
+        frames, pictures = self._feed.seen, []
+        while frames:
+            frame = frames.popleft()
+            best = max(frame.balls, key=lambda ball: ball.confidence, default=None)
+            ball = None if best is None else (best.x, best.y)
+            robots = {it.robot: (it.x, it.y, it.heading) for it in frame.robots if it.heading is not None}
+            pictures.append(Detections(frame.captured - self._began, frame.camera, ball, robots))
+        return pictures
 
     def reported(self) -> list[RefereeEvent]:
         """See :meth:`robobt.world.World.reported`."""

@@ -99,7 +99,7 @@ class RecordingPlayback:
 
         def ticks() -> Iterator[EncodedTicks]:
             for batch in batches:
-                times, truth, observed, commands, changes = batch.columns
+                times, truth, observed, commands, changes, detections = batch.columns
                 if observed.null_count:
                     observed = truth
                 texts = changes.to_pylist()
@@ -111,6 +111,7 @@ class RecordingPlayback:
                         shown if observed is truth else observed[i : i + 1],
                         commands[i : i + 1],
                         [_changes(texts[i])],
+                        detections[i : i + 1],
                     )
 
         return header, ticks()

@@ -97,7 +97,8 @@ class MatchCapture:
                 self._capture.event(kind, truth.time, team=team)
             self._world.draw(self._capture.field)
             # Observations that may differ from the truth are compared with it when they are written.
-            self._capture.tick(truth, commands, None if self._shows_truth else observed, packed)
+            shown = None if self._shows_truth else observed
+            self._capture.tick(truth, commands, shown, packed, self._world.detections())
 
     def note(self, event: ReportedEvent) -> None:
         """Capture an event."""

@@ -12,6 +12,7 @@ from robobt.sim.records import COMMAND, size
 from robobt.sim.settings import SimSettings
 from robobt.sim.sight import Sight
 from robobt.world.command import KickTrigger, RobotCommand
+from robobt.world.detections import Detections
 from robobt.world.field import FieldGeometry
 from robobt.world.game import Team
 from robobt.world.geometry import FloatArray, wrap_angles
@@ -67,6 +68,7 @@ class SimWorld(World):
         self._past: deque[FloatArray] = deque(maxlen=round(realism.vision_delay / self._arenas.dt) + 1)
         self._seen: FloatArray | None = None
         self._felt: list[bool] | None = None
+        self._gone: list[bool] = [False] * (len(self._ids) + 1)
         self._report: FloatArray = self._rows()
 
     @property
@@ -168,6 +170,22 @@ class SimWorld(World):
             for i, (row, factor) in enumerate(zip(sent, factors.tolist(), strict=True)):
                 sent[i] = (*row[:3], row[3] * factor, *row[4:])
 
+    def detections(self) -> list[Detections]:
+        """See :meth:`robobt.world.World.detections`; the cameras together, at the time that they claim."""
+        if not self._reports:
+            return []
+        realism = self.settings.realism
+        age = realism.vision_delay if realism.processing_time is None else realism.processing_time
+        seen = [row for row, gone in zip(self._report.tolist(), self._gone, strict=True) if not gone]
+        ball = None if self._gone[-1] else (seen[-1][0], seen[-1][1])
+        numbers = [robot for robot, gone in zip(self._ids, self._gone[:-1], strict=True) if not gone]
+        robots = {
+            robot: (x, y, heading)
+            for robot, (x, y, heading, *_) in zip(numbers, seen, strict=False)
+            if robot not in self._taken
+        }
+        return [Detections(self.time - age, 0, ball, robots)]
+
     def seen_kicks(self) -> list[tuple[RobotId, float]] | None:
         """See :meth:`robobt.world.World.seen_kicks`; a kick ticks after its command is reported."""
         return [(robot, self.time) for robot in self.kicks] if self._arenas.late else None
@@ -244,6 +262,7 @@ class SimWorld(World):
             if self._seen is not None:
                 rows[gone] = self._seen[gone]
             self._seen = rows
+            self._gone = gone.tolist()
         return rows
 
     def _responses(self) -> list[bool]:

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from typing import Protocol, runtime_checkable
 
 from robobt.world.command import RobotCommand
+from robobt.world.detections import Detections
 from robobt.world.game import Team
 from robobt.world.sketch import Sketch
 from robobt.world.state import Frame, RobotId
@@ -131,6 +132,10 @@ class World(Protocol):
         """Return the events that the referee there has reported since this was asked last."""
         return ()
 
+    def detections(self) -> Sequence[Detections]:
+        """Return what cameras saw since this was asked last; empty where that is unknown, or the truth."""
+        return ()
+
     def draw(self, sketch: Sketch) -> None:  # noqa: ARG002
         """Draw this world's further information on ``sketch``, in world coordinates, for viewers."""
         return
@@ -210,6 +215,10 @@ class WrappedWorld(World):
     def reported(self) -> Sequence[ReportedEvent]:
         """See :meth:`World.reported`."""
         return self.world.reported()
+
+    def detections(self) -> Sequence[Detections]:
+        """See :meth:`World.detections`."""
+        return self.world.detections()
 
     def draw(self, sketch: Sketch) -> None:
         """See :meth:`World.draw`."""

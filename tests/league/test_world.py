@@ -75,6 +75,10 @@ def test_it_puts_sees_drives_and_stops_robots(simulator: str, group: str) -> Non
         frame = drive(world, {ME: RobotCommand(0.5, 0.0, 1.0), HER: RobotCommand(0.0, 0.4)}, as_commanded)
         assert times == sorted(set(times))
         assert world.truth().time == frame.time
+        seen = world.detections()
+        assert ME in seen[-1].robots
+        assert frame.time - 0.5 < seen[-1].captured <= frame.time + 0.05
+        assert world.detections() == []
         drive(world, {}, still)
 
 

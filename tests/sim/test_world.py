@@ -49,6 +49,21 @@ def test_what_a_frame_tells_of_the_ball_is_how_it_rolls(name: str, speed: float)
         assert world.time == pytest.approx(expected, rel=0.02)
 
 
+def test_detections_are_what_cameras_saw_without_what_they_lost() -> None:
+    assert pair().detections() == []
+    lossy = RealismSettings(robot_noise=0.001, ball_noise=0.001, missing_ball=1.0, vision_delay=0.03)
+    world = SimWorld(DIVISION_B, {ME: None, IT: None}, preset("default", realism=lossy), 1 / 60)
+    world.reset(Placement({ME: (-1, 0.5, 0.3), IT: (1, -0.2, 3)}, (0.1, 0.2, 1, 0)), seed=1)
+    world.act({})
+    (seen,) = world.detections()
+    assert seen.ball is None
+    assert seen.captured == pytest.approx(1 / 60 - 0.03)
+    shown = world.observe().robots()
+    assert seen.robots == {it: (shown[it].x, shown[it].y, shown[it].heading) for it in (ME, IT)}
+    world.take_robot(IT)
+    assert set(world.detections()[0].robots) == {ME}
+
+
 def test_time_passes_by_the_control_period() -> None:
     world = pair(period=0.03)
     for _ in range(10):

@@ -6,7 +6,7 @@ The match waits meanwhile, so the capture only keeps objects that will not chang
 
 from __future__ import annotations
 
-from collections.abc import Callable, Container, Mapping
+from collections.abc import Callable, Container, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any
 
@@ -17,6 +17,7 @@ from robobt.tree import TreeRunner
 from robobt.tree.drawing import describe
 from robobt.tree.recording import TreeState, TreeWatches, node_ids
 from robobt.world.command import RobotCommand
+from robobt.world.detections import Detections
 from robobt.world.game import GameState, Team
 from robobt.world.sketch import Shape, Sketch
 from robobt.world.state import Frame, RobotId
@@ -41,6 +42,7 @@ class CapturedTick:
         states: the trees that may have changed, by their places.
         written: the stores that may have changed.
         changes: all other changes, by the names of :class:`~robobt.match.recording.stream.TickChanges`.
+        detections: what cameras saw since the tick before, as they did.
     """
 
     time: float
@@ -50,6 +52,7 @@ class CapturedTick:
     states: list[tuple[int, TreeState]]
     written: list[Written]
     changes: dict[str, Any]
+    detections: Sequence[Detections] = ()
 
 
 class Capture:
@@ -112,6 +115,7 @@ class Capture:
         commands: Mapping[RobotId, RobotCommand] | None = None,
         observed: Frame | None = None,
         packed: bytes | None = None,
+        detections: Sequence[Detections] = (),
     ) -> None:
         """Take one frame, the commands decided on it and the trees' present state.
 
@@ -122,6 +126,7 @@ class Capture:
             commands: the commands sent to the robots.
             observed: the frame that the trees saw, if it differs.
             packed: the frame packed from blue's side, if it has been packed already.
+            detections: what cameras saw since the tick before, as they did.
         """
         if self._ticks == self._round:
             self._ticks = 0
@@ -151,6 +156,7 @@ class Capture:
             self.trees.look(),
             self.stores.look(),
             changes,
+            detections,
         )
         for take in self.takers:
             take(tick)

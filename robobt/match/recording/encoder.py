@@ -11,7 +11,7 @@ import pyarrow as pa
 
 from robobt.match.recording.capture import Capture, CapturedTick
 from robobt.match.recording.header import Event
-from robobt.match.recording.numbers import TickNumbers
+from robobt.match.recording.numbers import DETECTIONS_TYPE, TickNumbers
 from robobt.match.recording.stores import StoreChanges
 from robobt.match.recording.stream import RECORDING_COLUMNS
 from robobt.tree.recording import TreeChanges
@@ -31,6 +31,7 @@ class EncodedTicks:
         commands: values of the column ``commands``.
         changes: the changes of each tick, by the names of
             :class:`~robobt.match.recording.stream.TickChanges`.
+        detections: values of the column ``detections``; None if cameras told nothing.
     """
 
     times: list[float]
@@ -38,6 +39,7 @@ class EncodedTicks:
     observed: pa.Array
     commands: pa.Array
     changes: list[dict[str, Any]]
+    detections: pa.Array | None = None
 
     def batch(self) -> pa.RecordBatch:
         """Return the rows."""
@@ -49,6 +51,7 @@ class EncodedTicks:
             self.commands,
             # Invalid Unicode, such as half a surrogate pair, becomes a question mark.
             pa.array([text and text.encode("utf-8", "replace") for text in texts], pa.string()),
+            pa.nulls(len(texts), DETECTIONS_TYPE) if self.detections is None else self.detections,
         ]
         return pa.RecordBatch.from_arrays(columns, RECORDING_COLUMNS)
 
@@ -82,6 +85,7 @@ class TickEncoder:
             truth if observed == truths else self._numbers.poses(observed),
             self._numbers.commands([tick.commands for tick in ticks]),
             [self._changes(tick) for tick in ticks],
+            self._numbers.detections([(tick.time, tick.detections) for tick in ticks]),
         )
 
     def _changes(self, tick: CapturedTick) -> dict[str, Any]:

@@ -20,7 +20,7 @@ from robobt.world.limits import DEFAULT_LIMITS, RobotLimits
 from robobt.world.state import ROBOT_RADIUS, RobotId
 
 RECORDING_FORMAT = "robobt-recording"
-RECORDING_VERSION = 4
+RECORDING_VERSION = 5
 
 
 class RecordingError(RobobtError, ValueError):

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from robobt.match.recording.header import RobotFlag
 from robobt.world.command import KickTrigger, RobotCommand
+from robobt.world.detections import Detections
 from robobt.world.game import Team
 from robobt.world.geometry import FloatArray
 from robobt.world.state import RobotId
@@ -24,6 +25,12 @@ POSE = 7
 
 COMMAND_NUMBERS = 6
 """Values per command: vx, vy, omega, kick speed, kick angle, flags."""
+
+DETECTION_HEAD, DETECTED_POSE = 4, 3
+"""Values of a picture (camera, age, ball x, y) and, behind them, of each robot in it (x, y, heading)."""
+
+DETECTIONS_TYPE = pa.list_(pa.float32())
+"""Type of the column ``detections``: the pictures of a tick, one behind the other."""
 
 # Powers of two, because zero bits of a number take no space in the file.
 _BALL_STEPS = (2**-16, 2**-16, 2**-10, 2**-10, 2**-16, 2**-10)
@@ -78,6 +85,26 @@ class TickNumbers:
             + RobotFlag.KICK_NOW.value * (kicking & at_once)
         )
         return _column(table.reshape(len(sent), -1), _COMMAND_STEPS * len(usual))
+
+    def detections(self, seen: Sequence[tuple[float, Sequence[Detections]]]) -> pa.Array | None:
+        """Return the column ``detections`` from ticks' times and what cameras saw; None for nothing."""
+        if not any(pictures for _, pictures in seen):
+            return None
+        width = DETECTION_HEAD + DETECTED_POSE * len(self._slots)
+        rows: list[list[float] | None] = []
+        for time, pictures in seen:
+            table = np.full((len(pictures), width), nan)
+            for row, picture in zip(table, pictures, strict=True):
+                row[:2] = picture.camera, time - picture.captured
+                if picture.ball is not None:
+                    row[2:DETECTION_HEAD] = picture.ball
+                for robot, pose in picture.robots.items():
+                    if robot in self._slots:
+                        at = DETECTION_HEAD + DETECTED_POSE * self._slots[robot]
+                        row[at : at + DETECTED_POSE] = pose
+            steps = np.array((1.0, 2**-16, 2**-16, 2**-16, *(2**-16, 2**-16, 2**-14) * len(self._slots)))
+            rows.append((np.rint(table / steps) * steps).reshape(-1).tolist() if len(pictures) else None)
+        return pa.array(rows, DETECTIONS_TYPE)
 
     def _fill(self, table: FloatArray, ticks: list[int], packed: FloatArray) -> None:
         """Enter packed frames (frames, numbers) with this many robots into the rows of their ticks."""

@@ -11,8 +11,15 @@ from pydantic import JsonValue, ValidationError
 
 from robobt.match.recording.capture import FIELD_SKETCHES
 from robobt.match.recording.header import Event, RecordedNode, RecordingError, RecordingHeader, RobotFlag
-from robobt.match.recording.numbers import BALL_NUMBERS, COMMAND_NUMBERS, POSE, numbers_of
-from robobt.match.recording.recording import Poses, Recording, Timeline
+from robobt.match.recording.numbers import (
+    BALL_NUMBERS,
+    COMMAND_NUMBERS,
+    DETECTED_POSE,
+    DETECTION_HEAD,
+    POSE,
+    numbers_of,
+)
+from robobt.match.recording.recording import Poses, Recording, SeenPictures, Timeline
 from robobt.match.recording.stream import TickChanges, invalid, open_stream, read_bytes, too_large
 from robobt.world.game import GameState, Team
 from robobt.world.sketch import Shape
@@ -26,6 +33,9 @@ _FEW_VALUES, _BYTES_PER_VALUE = 100_000, 8
 
 _LATEST_TIME = 1e9
 """Latest time allowed [s]."""
+
+_FARTHEST = 1e4
+"""Values of pictures beyond this are unknown."""
 
 
 def load_recording(path: str | Path) -> Recording:
@@ -69,11 +79,12 @@ class _BatchReader:
         self._touches: Timeline[RobotId | None] = []
         self._events: list[Event] = []
         self._outcome: dict[str, JsonValue] | None = None
+        self._pictures: list[tuple[float, NDArray[np.float32]]] = []
         self._ticks = self._text = 0
 
     def read(self, batch: pa.RecordBatch) -> None:
         """Take the next ticks."""
-        time, truth, observed, commands, changes = batch.columns
+        time, truth, observed, commands, changes, detections = batch.columns
         missing = time.null_count or truth.null_count or commands.null_count
         if missing or observed.null_count not in (0, len(batch)):
             raise self._error(self._ticks, None, "lacks numbers")
@@ -81,6 +92,7 @@ class _BatchReader:
         self._truth.append(numbers_of(truth))
         self._observed.append(self._truth[-1] if observed.null_count else numbers_of(observed))
         self._commands.append(numbers_of(commands))
+        self._read_detections(time, detections)
         self._text += changes.nbytes
         if self._text > MOST_TEXT:
             raise too_large(self._path)
@@ -88,6 +100,19 @@ class _BatchReader:
             if text is not None:
                 self._change(tick, text)
         self._ticks += len(batch)
+
+    def _read_detections(self, times: pa.Array, column: pa.Array) -> None:
+        if column.null_count == len(column):
+            return
+        width = DETECTION_HEAD + DETECTED_POSE * len(self._header.robots)
+        for tick, (time, numbers) in enumerate(zip(times, column, strict=True), start=self._ticks):
+            if not numbers.is_valid:
+                continue
+            values = numbers.values.to_numpy(zero_copy_only=False)
+            if len(values) % width or numbers.values.null_count:
+                raise self._error(tick, "detections", "are not whole pictures")
+            table = values.reshape(-1, width)
+            self._pictures += [(time.as_py() - float(row[1]), row) for row in table]
 
     def recording(self) -> Recording:
         """Return the whole recording."""
@@ -121,6 +146,7 @@ class _BatchReader:
             touches=self._touches,
             events=self._events,
             outcome=self._outcome,
+            pictures=pictures_of(self._pictures, robots),
         )
 
     def _change(self, tick: int, text: str) -> None:
@@ -162,6 +188,19 @@ class _BatchReader:
 
     def _error(self, tick: int, field: str | None, problem: str) -> RecordingError:
         return RecordingError(self._path, problem, tick, field)
+
+
+def pictures_of(pictures: list[tuple[float, NDArray[np.float32]]], count: int) -> SeenPictures | None:
+    """Return pictures, by the time of each and its numbers, of this many robots; None for none."""
+    if not pictures:
+        return None
+    table = np.stack([row for _, row in pictures])
+    table = np.where(np.abs(table) < _FARTHEST, table, np.float32(np.nan))
+    robots = table[:, DETECTION_HEAD:].reshape(len(table), count, DETECTED_POSE)
+    robots[np.isnan(robots).any(axis=2)] = np.nan
+    times = np.array([time for time, _ in pictures])
+    cameras = np.nan_to_num(table[:, 0]).astype(np.int64)
+    return SeenPictures(times, table[:, 1].astype(np.float64), cameras, table[:, 2:DETECTION_HEAD], robots)
 
 
 def poses_of(tables: list[NDArray[np.float32]], count: int) -> Poses:

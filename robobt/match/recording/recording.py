@@ -41,6 +41,25 @@ class Poses:
 
 
 @dataclass(slots=True)
+class SeenPictures:
+    """What cameras saw, neither filtered nor predicted, in world coordinates.
+
+    Attributes:
+        times: (P,) when the pictures were taken, by the recording's clock [s].
+        ages: (P,) time from then to the tick that saw them first [s].
+        cameras: (P,) number of the camera.
+        ball: (P, 2) x, y [m]; NaN where no ball was seen.
+        robots: (P, K, 3) x, y [m], heading [rad]; NaN where a robot was not seen.
+    """
+
+    times: NDArray[np.float64]
+    ages: NDArray[np.float64]
+    cameras: NDArray[np.int64]
+    ball: NDArray[np.float32]
+    robots: NDArray[np.float32]
+
+
+@dataclass(slots=True)
 class Recording:
     """A recorded match, in world coordinates (blue defends -x).
 
@@ -66,6 +85,7 @@ class Recording:
         touches: the robot that touched the ball last, whenever it changed.
         events: events in the order of recording.
         outcome: the outcome of the match, None if its recorder was not closed.
+        pictures: what cameras saw; None where that is not known, or the truth.
     """
 
     path: Path
@@ -83,6 +103,7 @@ class Recording:
     touches: Timeline[RobotId | None]
     events: list[Event]
     outcome: dict[str, JsonValue] | None
+    pictures: SeenPictures | None = None
 
     @property
     def complete(self) -> bool:

@@ -7,6 +7,7 @@
 | ``observed`` | the same as the trees were shown it, null where that is the truth |
 | ``commands`` | each robot's vx, vy, omega, kick speed, kick angle, :class:`RobotFlag` |
 | ``changes`` | what else changed: :class:`TickChanges` as JSON, null for nothing |
+| ``detections`` | pictures since the last tick as cameras saw them: camera, age, ball and robots; or null |
 
 Numbers are in SI units and world coordinates; NaN means unknown. The header is JSON in the schema's
 metadata.
@@ -40,13 +41,13 @@ from robobt.match.recording.header import (
     RecordingError,
     RecordingHeader,
 )
-from robobt.match.recording.numbers import BALL_NUMBERS, COMMAND_NUMBERS, POSE
+from robobt.match.recording.numbers import BALL_NUMBERS, COMMAND_NUMBERS, DETECTIONS_TYPE, POSE
 from robobt.match.recording.version_3 import BALL_3, COMMAND_3, from_version_3
 from robobt.world.game import GameState
 from robobt.world.sketch import MOST_SHAPES, check_shape
 from robobt.world.state import RobotId
 
-RECORDING_COLUMNS = ("time", "truth", "observed", "commands", "changes")
+RECORDING_COLUMNS = ("time", "truth", "observed", "commands", "changes", "detections")
 _FORMAT_KEY, _VERSION_KEY, _HEADER_KEY = b"format", b"version", b"header"
 
 MOST_RECORDING_BYTES = 200 * 2**20
@@ -58,7 +59,7 @@ _SMALL, _RATIO = 24 * 2**20, 10
 _NO_RECORDING = "is not a robobt recording"
 
 _STREAM, _END = b"\xff\xff\xff\xff", b"\xff\xff\xff\xff\x00\x00\x00\x00"
-_READ = ("3", str(RECORDING_VERSION))
+_READ = ("3", "4", str(RECORDING_VERSION))
 _OLD = (b"\x1f\x8b", b'{"format":"robobt-recording"')
 """How recordings of versions 1 and 2 begin, packed by gzip or plain."""
 
@@ -98,9 +99,12 @@ def _schema_of(header: RecordingHeader, version: str = str(RECORDING_VERSION)) -
     ball, command = (BALL_3, COMMAND_3) if version == "3" else (BALL_NUMBERS, COMMAND_NUMBERS)
     poses = pa.list_(pa.float32(), ball + POSE * len(header.robots))
     commands = pa.list_(pa.float32(), command * len(header.robots))
-    types = (pa.float64(), poses, poses, commands, pa.string())
+    types = (pa.float64(), poses, poses, commands, pa.string(), DETECTIONS_TYPE)
+    columns = list(zip(RECORDING_COLUMNS, types, strict=True))
+    if version in ("3", "4"):
+        columns.pop()
     metadata = {_FORMAT_KEY: RECORDING_FORMAT, _VERSION_KEY: version, _HEADER_KEY: header.model_dump_json()}
-    return pa.schema(list(zip(RECORDING_COLUMNS, types, strict=True)), metadata=metadata)
+    return pa.schema(columns, metadata=metadata)
 
 
 def new_stream(sink: BinaryIO | pa.NativeFile, header: RecordingHeader) -> pa.ipc.RecordBatchStreamWriter:
@@ -164,7 +168,13 @@ def open_stream(data: bytes, path: Path) -> tuple[RecordingHeader, Iterator[pa.R
         raise RecordingError(path, "its columns are not those of its header's robots")
     batches = _batches(source, schema, path, data.endswith(_END))
     if version == "3":
-        batches = (from_version_3(batch, len(header.robots), _schema_of(header)) for batch in batches)
+        batches = (from_version_3(batch, len(header.robots), _schema_of(header, "4")) for batch in batches)
+    if version in ("3", "4"):
+        now = _schema_of(header)
+        batches = (
+            pa.RecordBatch.from_arrays([*batch.columns, pa.nulls(len(batch), DETECTIONS_TYPE)], schema=now)
+            for batch in batches
+        )
     return header, batches
 
 

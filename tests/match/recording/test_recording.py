@@ -37,6 +37,7 @@ from robobt.skills.store import Store
 from robobt.tree import Behaviour, Inverter, Leaf, Selector, Sequence, Status, TreeRunner
 from robobt.world import BallState, Frame, RefereeCommand, RobotCommand, RobotId, RobotState, Team
 from robobt.world.command import CHIP_ANGLE
+from robobt.world.detections import Detections
 from robobt.worlds import sim_world
 from tests.conftest import StartPython
 from tests.match.recording.made_recording import (
@@ -292,7 +293,7 @@ def test_the_file_is_a_table_that_any_reader_of_arrow_opens(path: Path) -> None:
     record(path)
     with pa.memory_map(str(path)) as file:
         table = pa.ipc.open_stream(file).read_all()
-    assert table.column_names == ["time", "truth", "observed", "commands", "changes"]
+    assert table.column_names == ["time", "truth", "observed", "commands", "changes", "detections"]
     assert table["time"].to_pylist() == pytest.approx([frame(tick).time for tick in range(120)])
     assert table["truth"][7].as_py()[:2] == pytest.approx(frame(7).ball.position, abs=1e-5)
     assert table["observed"].null_count == 120
@@ -344,6 +345,7 @@ def test_a_file_cut_anywhere_loads_up_to_its_last_whole_batch(path: Path, tmp_pa
         (stream({}), "is not a robobt recording"),
         (stream({"format": "robobt-recording", "version": "7"}), "version: '7' cannot be read by"),
         (stream({"format": "robobt-recording", "version": "4"}), "header: Invalid JSON"),
+        (stream({"format": "robobt-recording", "version": "5"}), "header: Invalid JSON"),
         (stream({"format": "robobt-recording", "version": "3", "header": "{}"}), "period: Field required"),
         (stream({"format": "robobt-recording"})[:40], "is cut off inside its header"),
         (b'{"format":"robobt-recording","version":2}\n', "is a recording in an older format"),
@@ -358,7 +360,7 @@ def test_a_foreign_file_is_refused_in_one_clear_line(path: Path, content: bytes,
     assert "\n" not in str(caught.value)
 
 
-@pytest.mark.parametrize("version", ["3", "4"])
+@pytest.mark.parametrize("version", ["3", "4", "5"])
 def test_columns_that_do_not_fit_the_header_are_refused(path: Path, version: str) -> None:
     metadata = {"format": "robobt-recording", "version": version, "header": header().model_dump_json()}
     path.write_bytes(stream(metadata))
@@ -378,6 +380,31 @@ def test_a_recording_of_version_3_is_read_with_its_ball_on_the_ground(path: Path
             assert old.letters_at(robot, tick) == new.letters_at(robot, tick)
     assert old.outcome == new.outcome
     assert "replay" in replay_html(old)
+
+
+def test_what_cameras_saw_comes_back_to_the_rounding(path: Path) -> None:
+    first = Detections(frame(1).time - 0.03, 2, (1.5, -0.25), {BLUE_4: (-1.0, 2.0, 0.5)})
+    second = Detections(frame(1).time - 0.02, 3, None, {YELLOW_0: (3.0, 0.0, -2.0), BLUE_1: (0.0, 0.5, 1.0)})
+    with Recorder(path, header()) as recorder:
+        recorder.tick(frame(0))
+        recorder.tick(frame(1), detections=[first, second])
+        recorder.close({})
+    pictures = load_recording(path).pictures
+    assert pictures is not None
+    assert pictures.times == pytest.approx([first.captured, second.captured], abs=1e-4)
+    assert pictures.ages == pytest.approx([0.03, 0.02], abs=1e-4)
+    assert pictures.cameras.tolist() == [2, 3]
+    assert pictures.ball[0] == pytest.approx([1.5, -0.25])
+    assert np.isnan(pictures.ball[1]).all()
+    slots = [load_recording(path).slot(robot) for robot in (BLUE_4, YELLOW_0)]
+    assert pictures.robots[0, slots[0]] == pytest.approx([-1.0, 2.0, 0.5], abs=1e-4)
+    assert np.isnan(pictures.robots[0, slots[1]]).all()
+    assert pictures.robots[1, slots[1]] == pytest.approx([3.0, 0.0, -2.0], abs=1e-4)
+
+
+def test_a_recording_of_a_world_that_shows_the_truth_holds_no_pictures(path: Path) -> None:
+    record(path, ticks=30)
+    assert load_recording(path).pictures is None
 
 
 def test_a_ball_in_the_air_and_a_chip_come_back_to_the_rounding(path: Path) -> None:
