@@ -25,6 +25,7 @@ COMMANDS = {
     "tournament": "tournament:tournament",
     "train": "train:train",
     "degradation": "degradation:command",
+    "blind_fields": "blind_fields:blind_fields",
     "filter": "filter:filter_",
     "chips": "chips:chips",
     "clock": "clock:clock",

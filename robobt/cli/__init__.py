@@ -66,6 +66,7 @@ _COMMAND_GROUPS = {
             "export": ("record:export", "Write a recording for other tools."),
             "case": ("record:case", "Save a tick as a regression case."),
             "statistics": ("record:statistics", "Count goals, passes, fouls and more."),
+            "identify": ("identify:identify", "Identify ball, robots, delay and noise."),
             "demonstrations": ("record:demonstrations", "Record a script or skill doing a task."),
         },
     ),

@@ -11,6 +11,7 @@ COMMANDS = {
     "collect shots": "robobt shots collect",
     "collect": "robobt shots collect",
     "demonstrations": "robobt record demonstrations",
+    "identify": "robobt record identify",
     "live": "robobt match --live",
     "models": "robobt list models",
     "paper": "python -m paper",

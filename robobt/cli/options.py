@@ -14,6 +14,7 @@ MEANINGS = {
     "--against": "The entrant that all others meet",
     "--alpha": "How often --sprt may call ELO0 better",
     "--attack": "How the attacker starts: in motion, still, or both in turn",
+    "--base": "The preset that has everything else",
     "--beta": "How often --sprt may call ELO1 not better",
     "--blue": "Play of the blue robots except the goalkeeper; ':NAME=VALUE' alone keeps the play",
     "--blue-port": "Port for the control of blue robots",

@@ -9,11 +9,13 @@ the ball and how much acceleration it bears was measured in this one.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from pathlib import Path
 
-from pydantic import Field
+from pydantic import Field, ValidationError
 
-from robobt.config.errors import unknown_name
-from robobt.config.validation import Settings
+from robobt.config.errors import ConfigError, message_of, unknown_name
+from robobt.config.validation import Settings, first_problem
+from robobt.config.yaml import read_yaml
 from robobt.sim.real_robots import IDENTIFIED_ROBOTS, REAL_FIELDS, REAL_LIMITS, RealField
 from robobt.sim.realism import RealismSettings, realism_level
 from robobt.sim.robot_settings import (
@@ -241,25 +243,53 @@ contacts they push the ball away more often than there."""
 
 
 def preset(name: str, **changes: object) -> SimSettings:
-    """Return the preset ``name`` with top-level settings replaced by ``changes``.
+    """Return a preset with top-level settings replaced by ``changes``.
+
+    Args:
+        name: of the preset; or of a YAML file that holds what a scenario does under ``simulator``, as
+            ``robobt record identify`` writes it.
+        **changes: settings to replace.
 
     Raises:
         KeyError: no such preset; the message lists those there are.
+        ConfigError: the file cannot be read, or holds no settings of a simulator; it names file and field.
     """
+    if is_preset_file(name):
+        return _from_file(Path(name)).model_copy(update=changes)
     if name not in PRESETS:
         raise KeyError(f"no simulator preset is called {name!r}; {unknown_name(name, sorted(PRESETS))}")
     return PRESETS[name].model_copy(update=changes)
 
 
+def is_preset_file(name: str) -> bool:
+    """Return whether a preset is named as a file of settings, which ends in ``.yaml`` or ``.yml``."""
+    return name.lower().endswith((".yaml", ".yml"))
+
+
+def _from_file(path: Path) -> SimSettings:
+    data = read_yaml(path)
+    base = data.get("preset", "default")
+    if not isinstance(base, str) or is_preset_file(base):
+        raise ConfigError(str(path), "must be the name of a shipped preset", "preset")
+    try:
+        return settings_from(data)
+    except ValidationError as error:
+        field, problem = first_problem(error, SimSettings, data)
+        raise ConfigError(str(path), problem, field) from error
+    except KeyError as error:
+        raise ConfigError(str(path), message_of(error)) from error
+
+
 def settings_from(simulator: str | Mapping[str, object]) -> SimSettings:
     """Build settings from what a scenario file holds under ``simulator``.
 
-    A name is a preset. A mapping may name a ``preset`` to start from
+    A name is a preset, or a preset file. A mapping may name a ``preset`` to start from
     ("default" without one), a ``realism`` level by name, and any setting to
     change, nested as in :class:`SimSettings`.
 
     Raises:
         KeyError: an unknown preset or realism level.
+        ConfigError: a preset file that is wrong.
         pydantic.ValidationError: an unknown setting or a value out of range.
     """
     if isinstance(simulator, str):

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
 from pydantic import ValidationError
 
+from robobt.config.errors import ConfigError
 from robobt.sim import PRESETS, REALISM, SimSettings, preset, settings_from
 
 
@@ -44,6 +47,36 @@ def test_the_levels_are_er_forces(level: str, figures: tuple[float, ...]) -> Non
         0.035,
         0.01,
     )
+
+
+def test_a_preset_may_be_a_file_of_settings(tmp_path: Path) -> None:
+    path = tmp_path / "field.yaml"
+    path.write_text("preset: grsim\nball: {slide_deceleration: 2.5}\n")
+    settings = preset(str(path))
+    assert settings.ball.slide_deceleration == 2.5
+    assert settings.limits == preset("grsim").limits
+    assert settings_from({"preset": str(path), "ball": {"mass": 0.05}}).ball.slide_deceleration == 2.5
+
+
+@pytest.mark.parametrize(
+    ("text", "problem"),
+    [
+        (None, "cannot be read"),
+        ("ball: {mass: 9}", "ball.mass"),
+        ("preset: other", "no simulator preset is called 'other'"),
+        ("preset: other.yaml", "preset: must be the name of a shipped preset"),
+        ("realism: strong", "no realism level is called 'strong'"),
+        ("wheel: 3", "wheel"),
+    ],
+)
+def test_what_is_wrong_with_a_preset_file_is_said(tmp_path: Path, text: str | None, problem: str) -> None:
+    path = tmp_path / "field.yaml"
+    if text is not None:
+        path.write_text(text)
+    with pytest.raises(ConfigError) as error:
+        preset(str(path))
+    assert str(error.value).startswith(str(path))
+    assert problem in str(error.value)
 
 
 def test_a_name_is_a_preset() -> None:

@@ -1,0 +1,1 @@
+"""Fields that nobody knows: drawn, played on, identified, scored."""

@@ -1,0 +1,118 @@
+"""A figure that was identified: its value, its 95 % interval, and what it rests on."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from math import hypot, inf, isfinite, nan
+
+import numpy as np
+
+from robobt.statistics import mean_interval
+from robobt.world.geometry import FloatArray
+
+CONFIDENCE = 0.95
+"""Confidence of all intervals."""
+
+
+@dataclass(frozen=True, slots=True)
+class Estimate:
+    """An identified figure.
+
+    Attributes:
+        value: the estimate; NaN if nothing was seen.
+        low: lower end of the 95 % interval.
+        high: upper end of the interval.
+        count: number of independent events that it rests on, such as kicks or stretches of free rolling.
+        seen: whether that was enough; a figure that was not seen enough goes into no preset.
+        unit: of the value.
+    """
+
+    value: float
+    low: float
+    high: float
+    count: int
+    seen: bool
+    unit: str = ""
+
+    @property
+    def half_width(self) -> float:
+        """Half the width of the interval."""
+        return (self.high - self.low) / 2.0
+
+    def text(self) -> str:
+        """Return value, interval and unit as people read them."""
+        if not self.seen:
+            return "not seen enough"
+        unit = f" {self.unit}" if self.unit else ""
+        return f"{self.value:.4g} ({self.low:.4g} to {self.high:.4g}){unit}"
+
+
+def unseen(count: int = 0, unit: str = "") -> Estimate:
+    """Return the estimate of something that was not seen enough."""
+    return Estimate(nan, -inf, inf, count, False, unit)
+
+
+def from_error(
+    value: float, error: float, count: int, seen: bool, unit: str = "", freedom: int = 0
+) -> Estimate:
+    """Return an estimate from its standard error.
+
+    Args:
+        value: the estimate.
+        error: its standard error.
+        count: number of events that it rests on.
+        seen: whether that is enough, if the numbers are finite.
+        unit: of the value.
+        freedom: degrees of freedom of the standard error; 0 for many.
+    """
+    if not (isfinite(value) and isfinite(error)):
+        return unseen(count, unit)
+    half = quantile(freedom) * error
+    return Estimate(value, value - half, value + half, count, seen, unit)
+
+
+def quantile(freedom: int) -> float:
+    """Return the two-sided 95 % point of Student's distribution; of the normal one for 0.
+
+    Source: Hill's series in 1 / freedom, right to 1 % from three degrees on.
+    """
+    z = 1.959964
+    if freedom <= 0:
+        return z
+    n = float(freedom)
+    if n < 3:
+        return {1: 12.706, 2: 4.303}[int(n)]
+    first = (z**3 + z) / 4.0
+    second = (5 * z**5 + 16 * z**3 + 3 * z) / 96.0
+    third = (3 * z**7 + 19 * z**5 + 17 * z**3 - 15 * z) / 384.0
+    return z + first / n + second / n**2 + third / n**3
+
+
+def of_values(values: FloatArray, least: int, unit: str = "") -> Estimate:
+    """Return the mean of independent values, without outliers, seen enough from ``least`` values on."""
+    good = without_outliers(np.asarray(values, dtype=float))
+    if len(good) < max(2, least):
+        return unseen(len(good), unit)
+    low, high = mean_interval(good)
+    return Estimate(float(good.mean()), low, high, len(good), True, unit)
+
+
+def widened(estimate: Estimate, share: float) -> Estimate:
+    """Return an estimate with what is not random, a relative half width of ``share``, in its interval."""
+    if not estimate.seen:
+        return estimate
+    more = share * abs(estimate.value)
+    low = estimate.value - hypot(estimate.value - estimate.low, more)
+    high = estimate.value + hypot(estimate.high - estimate.value, more)
+    return replace(estimate, low=low, high=high)
+
+
+def without_outliers(values: FloatArray, factor: float = 4.0) -> FloatArray:
+    """Return the finite values within ``factor`` robust standard deviations of their median."""
+    good: FloatArray = values[np.isfinite(values)]
+    if len(good) < 4:
+        return good
+    middle = np.median(good)
+    spread = 1.4826 * np.median(np.abs(good - middle))
+    kept: FloatArray = good[np.abs(good - middle) <= factor * spread + 1e-12]
+    return kept

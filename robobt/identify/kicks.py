@@ -1,0 +1,201 @@
+"""Kicks: what becomes of a commanded speed, and of the speed with which a ball came to the first touch."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from math import cos, hypot, sin, sqrt
+from typing import NamedTuple
+
+import numpy as np
+
+from robobt.identify.ball import SeenKick
+from robobt.identify.ball_ways import MOUTH_DISTANCE
+from robobt.identify.estimate import Estimate, from_error, unseen
+from robobt.identify.observations import Observations
+
+_KICK_TIME = 0.07
+"""The heading at a kick is that of a line through what was seen within this time of it [s]."""
+
+_COMMANDED_BEFORE, _COMMANDED_AFTER = 0.06, 0.02
+"""How long before and after it could take effect a command to kick is looked for [s]."""
+
+_SAME_COMMAND = 0.03
+"""Relative difference of commanded speeds within that time from which it is unclear which was kicked."""
+
+_UNLIMITED_KICK = 6.35
+"""A faster ball may have been held back by the kicker at the rules' limit, and its speed tells nothing of a
+touch [m/s]."""
+
+_LEAST_KICKS = 3
+
+_MOST_SHARE_ERROR, _MOST_TOUCH_ERROR = 0.1, 0.1
+"""Half widths of intervals beyond which the share of a command and those of a touch are not seen enough."""
+
+_OUTLYING_KICK = 4.0
+
+
+class KickEstimate(NamedTuple):
+    """What kicks do.
+
+    Attributes:
+        share: of the commanded speed that a ball leaves with; own robots only.
+        spread: relative standard deviation of that.
+        returned: share of the speed at which a ball comes that a kick on the first touch adds; own robots
+            only.
+        kept: share of a ball's speed across the heading, seen by the robot's front, that a kick on the first
+            touch leaves.
+        fastest: speed of the fastest kick of any robot [m/s].
+    """
+
+    share: Estimate
+    spread: Estimate
+    returned: Estimate
+    kept: Estimate
+    fastest: Estimate
+
+
+@dataclass(slots=True)
+class _Kick:
+    """A kick in the robot's frame: what was commanded, how the ball left and, negative towards it, came.
+
+    ``front`` is how fast the robot's front moved sideways [m/s].
+    """
+
+    commanded: float
+    ahead: float
+    aside: float
+    came_ahead: float
+    came_aside: float
+    first_touch: bool
+    turn: float
+    front: float
+
+
+def identify_kicks(seen: Observations, kicks: list[SeenKick], delay: float | None) -> KickEstimate:
+    """Identify what kicks do.
+
+    Args:
+        seen: what cameras saw and what was sent.
+        kicks: that were seen.
+        delay: whole delay from a command to its seen effect [s]; None where no commands are known.
+
+    Returns:
+        the figures, each with its interval.
+    """
+    found = [kick for it in kicks if (kick := _in_frame(seen, it, delay)) is not None]
+    share, spread, returned, kept = _shares([kick for kick in found if kick.commanded > 0.0])
+    fastest = max([it.speed for it in kicks], default=0.0)
+    return KickEstimate(
+        share,
+        spread,
+        returned,
+        kept,
+        Estimate(fastest, fastest, fastest, len(kicks), len(kicks) >= _LEAST_KICKS, "m/s"),
+    )
+
+
+def _in_frame(seen: Observations, kick: SeenKick, delay: float | None) -> _Kick | None:
+    near = np.flatnonzero(np.abs(seen.times - kick.time) < _KICK_TIME)
+    near = near[np.isfinite(seen.poses[near, kick.robot, 0])]
+    if len(near) < 4:
+        return None
+    since = seen.times[near] - kick.time
+    _, turn, heading = np.polyfit(since, np.unwrap(seen.poses[near, kick.robot, 2]), 2).tolist()
+    drove = np.array([np.polyfit(since, seen.poses[near, kick.robot, axis], 1)[0] for axis in (0, 1)])
+    c, s = cos(heading), sin(heading)
+    came = drove if kick.came is None else kick.came
+    angle = kick.direction - heading
+    commanded = _commanded(seen, kick, delay)
+    first_touch = kick.came is not None and commanded > 0.0
+    if kick.came is not None and not first_touch:
+        commanded = 0.0
+    return _Kick(
+        commanded,
+        kick.speed * cos(angle),
+        kick.speed * sin(angle),
+        float(c * came[0] + s * came[1]),
+        float(c * came[1] - s * came[0]),
+        first_touch,
+        abs(turn),
+        float(c * drove[1] - s * drove[0]) + turn * MOUTH_DISTANCE,
+    )
+
+
+def _commanded(seen: Observations, kick: SeenKick, delay: float | None) -> float:
+    """Return the speed that was commanded for a flat kick [m/s]; 0 if that is not known."""
+    if delay is None:
+        return 0.0
+    sent = kick.time - delay
+    rows = np.flatnonzero((seen.sent > sent - _COMMANDED_BEFORE) & (seen.sent < sent + _COMMANDED_AFTER))
+    speeds = seen.commands[rows, kick.robot, 3]
+    asked = speeds > 0.0
+    if not asked.any() or np.any(seen.commands[rows[asked], kick.robot, 4] > 0.0):
+        return 0.0
+    speeds = speeds[asked]
+    middle = float(np.median(speeds))
+    return middle if np.ptp(speeds) < _SAME_COMMAND * middle else 0.0
+
+
+def _shares(kicks: list[_Kick]) -> tuple[Estimate, Estimate, Estimate, Estimate]:
+    """Return the share of the command, its spread, and the shares that touches give back and keep.
+
+    Each kick tells how fast the ball left, unless a limit held it back, and each first touch how it left
+    aside; both are linear in the three shares. The direction of a ball that a limit held back is as without.
+    """
+    rows, values, errors = [], [], []
+    for kick in kicks:
+        slope = kick.aside / kick.ahead
+        if kick.first_touch:
+            across = kick.came_aside - kick.front
+            rows.append((slope * kick.commanded, -slope * kick.came_ahead, -across))
+            values.append(kick.front)
+            angle_error = hypot(_ANGLE_ERROR, _TIME_ERROR * kick.turn)
+            errors.append(hypot(angle_error * kick.ahead, _SPEED_ERROR))
+        if hypot(kick.ahead, kick.aside) < _UNLIMITED_KICK or not kick.first_touch:
+            # How a ball that the robot had moved on its own is not known well.
+            unsure = 0.0 if kick.first_touch else _HELD_ERROR * kick.came_ahead
+            rows.append((kick.commanded, -kick.came_ahead if kick.first_touch else 0.0, 0.0))
+            values.append(kick.ahead)
+            errors.append(hypot(_LENGTH_ERROR * kick.commanded, _SPEED_ERROR, unsure))
+    lengths = [i for i, row in enumerate(rows) if row[2] == 0.0 and row[0] > 0.0]
+    if len(lengths) < _LEAST_KICKS:
+        return unseen(len(lengths)), unseen(len(lengths)), unseen(), unseen()
+    matrix, left, error = np.array(rows), np.array(values), np.array(errors)
+    numbers, weights = _EXPECTED_SHARES.copy(), 1.0 / error**2
+    spread = 1.0
+    for _ in range(30):
+        normal = (matrix * weights[:, None]).T @ matrix + np.diag(1.0 / _SHARES_ERROR**2)
+        numbers = np.linalg.solve(
+            normal, (matrix * weights[:, None]).T @ left + _EXPECTED_SHARES / _SHARES_ERROR**2
+        )
+        size = (left - matrix @ numbers) / error
+        spread = max(1.0, 1.4826 * float(np.median(np.abs(size[lengths]))))
+        weights = 1.0 / (error * spread) ** 2 / (1.0 + (size / (3.0 * spread)) ** 2) ** 2
+    deviations = np.sqrt(np.diag(np.linalg.inv(normal)))
+    residuals = (left - matrix @ numbers)[lengths] / matrix[lengths, 0]
+    good = np.abs(size[lengths]) < _OUTLYING_KICK * spread
+    count, touches = int(good.sum()), sum(kick.first_touch for kick in kicks)
+    returns = sum(kick.first_touch and hypot(kick.ahead, kick.aside) < _UNLIMITED_KICK for kick in kicks)
+    freedom = max(count - 1, 1)
+    deviation = sqrt(float(np.sum(residuals[good] ** 2)) / freedom)
+    half = 1.96 * deviation / sqrt(2.0 * freedom)
+    return (
+        _judged(numbers[0], deviations[0], count, count >= _LEAST_KICKS, _MOST_SHARE_ERROR, freedom),
+        Estimate(deviation, max(deviation - half, 0.0), deviation + half, count, count >= 5),
+        _judged(numbers[1], deviations[1], returns, touches > 0, _MOST_TOUCH_ERROR),
+        _judged(numbers[2], deviations[2], touches, touches > 0, _MOST_TOUCH_ERROR),
+    )
+
+
+def _judged(value: float, error: float, count: int, enough: bool, most: float, freedom: int = 0) -> Estimate:
+    estimate = from_error(float(value), float(error), count, enough, freedom=freedom)
+    return replace(estimate, seen=enough and estimate.half_width < most)
+
+
+_EXPECTED_SHARES, _SHARES_ERROR = np.array([1.0, 0.12, 0.6]), np.array([0.2, 0.15, 0.4])
+"""Shares of command, approach and sideways speed before anything was seen, and their standard errors.
+Source: the figures that TIGERs published of real fields and expect of simulators."""
+
+_ANGLE_ERROR, _TIME_ERROR, _LENGTH_ERROR, _SPEED_ERROR, _HELD_ERROR = 0.006, 0.002, 0.004, 0.015, 0.15
+"""Standard errors of a direction [rad], of the moment of a kick [s], of a speed as a share of it, of what a
+fit leaves [m/s], and of the speed of a ball that the robot had, as a share of the robot's."""

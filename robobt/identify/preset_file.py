@@ -1,0 +1,114 @@
+"""What was identified, as a file of simulator settings that matches and training can start from."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from robobt.config.atomic import write_atomically
+from robobt.config.yaml import write_yaml
+from robobt.identify.estimate import Estimate
+from robobt.identify.report import Identification
+
+_SIGNIFICANT_DIGITS = 4
+"""Significant digits in the file."""
+
+_LIMITS = (
+    "max_speed",
+    "acceleration",
+    "braking",
+    "side_acceleration",
+    "side_braking",
+    "max_turn",
+    "turn_acceleration",
+    "gain",
+    "side_gain",
+    "turn_gain",
+    "lag",
+    "side_lag",
+    "turn_lag",
+    "cross_ahead",
+    "cross_aside",
+)
+
+
+_AT_LEAST = {"cross_ahead": -0.5, "cross_aside": -0.5}
+"""Least values of limits, where that is not 0."""
+
+
+def preset_of(identified: Identification, base: str = "default") -> dict[str, object]:
+    """Return simulator settings with what was identified; the rest is that of a preset.
+
+    The limits are the medians of the robots whose commands were known, or of all robots without such.
+
+    Args:
+        identified: what was identified.
+        base: the preset that has everything else.
+
+    Returns:
+        settings as a scenario file holds them under ``simulator``.
+    """
+    ball = {
+        name: _rounded(figure)
+        for name in ("slide_deceleration", "roll_deceleration", "switch_share")
+        if (figure := getattr(identified.ball, name)).seen
+    }
+    realism = {
+        name: _rounded(figure)
+        for name, figure in (
+            ("ball_noise", identified.ball.noise),
+            *identified.noise._asdict().items(),
+            # A team cannot distinguish late pictures from late commands.
+            ("vision_delay", identified.delay),
+        )
+        if figure.seen
+    }
+    own = [robot for robot in identified.robots if robot.commanded] or list(identified.robots)
+    limits: dict[str, object] = {}
+    for name in _LIMITS:
+        values = [robot.figures[name].value for robot in own if robot.figures[name].seen]
+        if values:
+            limits[name] = _digits(max(float(np.median(values)), _AT_LEAST.get(name, 0.0)))
+    settings: dict[str, object] = {"preset": base}
+    kept, returned = identified.kicks.kept, identified.kicks.returned
+    if kept.seen:
+        limits["touch_kept"] = _digits(min(max(kept.value, 0.0), 1.0))
+    if returned.seen:
+        share = _digits(min(max(returned.value, 0.0), 1.0))
+        limits["kick_rebound"] = share
+        settings["kicker"] = {"damping": share}
+    for name, part in (("ball", ball), ("limits", limits), ("realism", realism)):
+        if part:
+            settings[name] = part
+    return settings
+
+
+def write_preset(identified: Identification, path: Path, base: str = "default") -> None:
+    """Write a preset file, with every figure and its interval as comments.
+
+    Args:
+        identified: what was identified.
+        path: of the file, whose name ends in ``.yaml``; replaced if it exists.
+        base: the preset that has everything else.
+
+    Raises:
+        OSError: the file cannot be written.
+    """
+    comments = [f"# {name}: {figure.text()}" for name, figure in identified.figures()]
+    head = [
+        f"# Identified by robobt from {identified.seconds:.0f} s of play: value (95 % interval).",
+        "# robobt match SCENARIO --set simulator.preset=THIS_FILE plays in it.",
+        "#",
+        *comments,
+        "",
+    ]
+    write_atomically(path, "\n".join(head) + write_yaml(preset_of(identified, base)))
+
+
+def _rounded(figure: Estimate) -> float:
+    return _digits(figure.value)
+
+
+def _digits(value: float) -> float:
+    return float(f"{value:.{_SIGNIFICANT_DIGITS}g}")

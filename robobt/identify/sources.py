@@ -1,0 +1,195 @@
+"""Observations from files: recordings of robobt, and the league's logs."""
+
+from __future__ import annotations
+
+import warnings
+from collections import Counter
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from robobt.config.errors import RobobtError
+from robobt.identify.observations import Observations, without_repeats
+from robobt.league.log.files import LogKind, is_log, read_log
+from robobt.league.wire.packets import PacketCounts
+from robobt.league.wire.vision import CameraFrame, read_vision
+from robobt.match.recording import Recording, load_recording
+from robobt.match.recording.header import RobotFlag
+from robobt.world.field import DIVISION_B, FieldGeometry
+from robobt.world.geometry import FloatArray
+from robobt.world.state import RobotId
+
+_ONE_PICTURE = 0.002
+"""Pictures of several cameras taken within this time are one [s]."""
+
+_LONGEST_AGE = 1.0
+"""Ages of pictures beyond this come from clocks that differ [s]."""
+
+
+class NothingToIdentifyError(RobobtError, ValueError):
+    """A file does not show what cameras saw; the message is one line that names the file."""
+
+
+def load_observations(path: Path) -> Observations:
+    """Return what the cameras saw, and what robots were sent, from a file.
+
+    Args:
+        path: a recording (``*.robobt.arrows``), or a league log (``*.log``, ``*.log.gz``), which holds no
+            commands.
+
+    Returns:
+        the observations.
+
+    Raises:
+        RecordingError: the file cannot be read as a recording.
+        LogError: it is no league log.
+        NothingToIdentifyError: it shows no robots, or does not show what cameras saw.
+    """
+    if is_log(path):
+        return observations_of_log(path)
+    return observations_of(load_recording(path))
+
+
+def observations_of(recording: Recording) -> Observations:
+    """Return what a recording holds of what cameras saw and robots were sent.
+
+    Raises:
+        NothingToIdentifyError: it holds no detections, and its frames are predicted or filtered.
+    """
+    header, times = recording.header, recording.times
+    robots = tuple(robot.id for robot in header.robots)
+    sent = (recording.flags & RobotFlag.COMMANDED) > 0
+    commands = np.zeros((*sent.shape, 6))
+    commands[..., :5] = np.where(sent[..., None], recording.commands, 0.0)
+    commands[..., 5] = sent & ((recording.flags & RobotFlag.DRIBBLER) > 0)
+    commands[:, ~sent.any(axis=0)] = np.nan
+    if recording.pictures is not None:
+        seen = recording.pictures
+        pictures = _together(
+            seen.times, seen.cameras, seen.ball.astype(np.float64), seen.robots.astype(np.float64)
+        )
+        return _observations(header.field, robots, pictures, times, commands, seen.ages)
+    if recording.observed is not None:
+        raise NothingToIdentifyError(
+            f"{recording.path}: holds no detections of cameras; record the match again with this version of "
+            "robobt"
+        )
+    # Cameras that show the truth.
+    ball, poses = recording.truth.ball[:, :2], recording.truth.robots[:, :, :3]
+    return Observations(
+        header.field, robots, times, ball.astype(np.float64), poses.astype(np.float64), times, commands
+    )
+
+
+class _Pictures(NamedTuple):
+    """Pictures in order: times, ball (T, 2), poses (T, K, 3), cameras (T,) or -1 where several are one."""
+
+    times: FloatArray
+    ball: FloatArray
+    poses: FloatArray
+    cameras: NDArray[np.int64]
+
+
+def _together(
+    times: FloatArray, cameras: NDArray[np.int64], ball: FloatArray, poses: FloatArray
+) -> _Pictures:
+    """Put pictures in order, and those of several cameras that were taken at once into one."""
+    order = np.argsort(times, kind="stable")
+    groups: list[list[int]] = []
+    for row in order.tolist():
+        group = groups[-1] if groups else []
+        taken = [int(cameras[other]) for other in group]
+        if group and times[row] - times[group[0]] < _ONE_PICTURE and int(cameras[row]) not in taken:
+            group.append(row)
+        else:
+            groups.append([row])
+    with warnings.catch_warnings():
+        # What no camera saw has no mean.
+        warnings.simplefilter("ignore", RuntimeWarning)
+        return _Pictures(
+            np.array([times[group].mean() for group in groups]),
+            np.array([_mean(ball[group]) for group in groups]),
+            np.array([_mean_poses(poses[group]) for group in groups]),
+            np.array([cameras[group[0]] if len(group) == 1 else -1 for group in groups]),
+        )
+
+
+def _mean(values: FloatArray) -> FloatArray:
+    result: FloatArray = values[0] if len(values) == 1 else np.nanmean(values, axis=0)
+    return result
+
+
+def _mean_poses(poses: FloatArray) -> FloatArray:
+    if len(poses) == 1:
+        return _mean(poses)
+    heading = np.arctan2(np.nanmean(np.sin(poses[..., 2]), axis=0), np.nanmean(np.cos(poses[..., 2]), axis=0))
+    return np.concatenate([_mean(poses[..., :2]), heading[:, None]], axis=1)
+
+
+def _observations(
+    field: FieldGeometry,
+    robots: tuple[RobotId, ...],
+    pictures: _Pictures,
+    sent: FloatArray,
+    commands: FloatArray,
+    ages: FloatArray,
+) -> Observations:
+    poses = np.array(pictures.poses)
+    for robot in range(len(robots)):
+        poses[:, robot] = without_repeats(poses[:, robot])
+    good = np.all((ages >= -1e-6) & (ages < _LONGEST_AGE))
+    several = len(set(pictures.cameras.tolist())) > 1
+    return Observations(
+        field,
+        robots,
+        pictures.times,
+        without_repeats(pictures.ball),
+        poses,
+        sent,
+        commands,
+        float(np.median(ages)) if good else 0.0,
+        pictures.cameras if several else None,
+    )
+
+
+def observations_of_log(path: Path) -> Observations:
+    """Return what the cameras of a league log saw.
+
+    Raises:
+        LogError: the file is no league log.
+        NothingToIdentifyError: it holds no vision, or no robot.
+    """
+    counts, field = PacketCounts(), DIVISION_B
+    frames: list[CameraFrame] = []
+    for record in read_log(path):
+        if record.kind in (LogKind.VISION, LogKind.VISION_2010):
+            packet = read_vision(record.data, counts)
+            if packet is not None:
+                field = packet.field or field
+                if packet.frame is not None:
+                    frames.append(packet.frame)
+    sights = Counter(robot.robot for frame in frames for robot in frame.robots)
+    # A number that is misread now and then is no robot.
+    robots = tuple(sorted(robot for robot, count in sights.items() if count > len(frames) / 100))
+    if not robots:
+        raise NothingToIdentifyError(f"{path}: shows no robots; a log with vision is needed")
+    place = {robot: i for i, robot in enumerate(robots)}
+    ball = np.full((len(frames), 2), np.nan)
+    poses = np.full((len(frames), len(robots), 3), np.nan)
+    for row, frame in enumerate(frames):
+        best = max(frame.balls, key=lambda it: it.confidence, default=None)
+        if best is not None:
+            ball[row] = best.x, best.y
+        for it in frame.robots:
+            if it.robot in place and it.heading is not None:
+                poses[row, place[it.robot]] = it.x, it.y, it.heading
+    pictures = _together(
+        np.array([frame.captured for frame in frames]),
+        np.array([frame.camera for frame in frames]),
+        ball,
+        poses,
+    )
+    ages = np.array([frame.sent - frame.captured for frame in frames])
+    return _observations(field, robots, pictures, np.zeros(0), np.zeros((0, len(robots), 6)), ages)

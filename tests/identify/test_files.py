@@ -1,0 +1,136 @@
+"""Recordings and logs become observations; what is identified from them becomes a preset file."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+from robobt.cli import app
+from robobt.identify import identify, write_preset
+from robobt.identify.estimate import unseen
+from robobt.identify.observations import without_repeats
+from robobt.identify.preset_file import preset_of
+from robobt.identify.sources import NothingToIdentifyError, load_observations, observations_of
+from robobt.league.log.files import LogKind, LogWriter
+from robobt.league.wire.vision import BallDetection, CameraFrame, RobotDetection, write_vision
+from robobt.match import MatchLoop, load_scenario
+from robobt.match.recording import load_recording
+from robobt.match.scenario.scenario import Scenario
+from robobt.sim import SimSettings, preset, settings_from
+from robobt.sim.realism import RealismSettings
+from robobt.world.game import Team
+from robobt.world.limits import RobotLimits
+from robobt.world.state import RobotId
+from robobt.worlds import sim_world
+from tests.identify.made import driven
+
+pytestmark = pytest.mark.integration
+
+NOISY = {"realism": {"robot_noise": 0.001, "ball_noise": 0.001, "heading_noise": 0.004, "vision_delay": 0.03}}
+
+
+def played(scenario: Scenario, path: Path) -> Path:
+    with MatchLoop(scenario, 0, sim_world, record=path) as match:
+        while match.tick():
+            pass
+    return path
+
+
+@pytest.fixture(scope="module")
+def recording(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    scenario = load_scenario("three_v_three").lasting(12.0)
+    changed = scenario.model_copy(update={"simulator": NOISY})
+    return played(changed, tmp_path_factory.mktemp("identify") / "match.robobt.arrows")
+
+
+def test_a_recording_holds_what_was_seen_and_sent(recording: Path) -> None:
+    seen = load_observations(recording)
+    assert len(seen) > 400
+    assert all(seen.commanded(robot) for robot in range(len(seen.robots)))
+    assert identify(seen).delay.value == pytest.approx(0.03, abs=0.003)
+
+
+def test_a_recording_without_detections_is_refused(recording: Path) -> None:
+    old = load_recording(recording)
+    old.pictures = None
+    with pytest.raises(NothingToIdentifyError, match="holds no detections"):
+        observations_of(old)
+
+
+def test_a_log_shows_robots_and_ball_but_no_commands(tmp_path: Path) -> None:
+    robot = RobotId(Team.YELLOW, 3)
+    with LogWriter(tmp_path / "field.log") as log:
+        for i in range(200):
+            at = i / 60
+            frame = CameraFrame(0, i, at, at + 0.02)
+            if i != 50:
+                frame.robots.append(RobotDetection(robot, 0.5 * at, 0.0, 0.0))
+            frame.balls.append(BallDetection(1.0, 2.0))
+            log.write(round((at + 0.02) * 1e9), LogKind.VISION, write_vision(frame))
+    seen = load_observations(tmp_path / "field.log")
+    assert seen.robots == (robot,)
+    assert not seen.commanded(0)
+    assert np.isnan(seen.poses[50, 0]).all()
+    assert seen.ball[7] == pytest.approx([1.0, 2.0])
+    assert seen.age == pytest.approx(0.02)
+
+
+def test_a_log_without_robots_is_refused(tmp_path: Path) -> None:
+    with LogWriter(tmp_path / "empty.log"):
+        pass
+    with pytest.raises(NothingToIdentifyError, match="shows no robots"):
+        load_observations(tmp_path / "empty.log")
+
+
+def test_lost_detections_are_gaps_and_things_at_rest_are_not() -> None:
+    noisy = np.array([[0.0, 0.0], [0.1, 0.0], [0.1, 0.0], [0.2, 0.0]])
+    assert np.isnan(without_repeats(noisy)[:, 0]).tolist() == [False, False, True, False]
+    still = np.zeros((50, 2))
+    assert np.isfinite(without_repeats(still)).all()
+
+
+def test_a_preset_file_is_played_in(tmp_path: Path) -> None:
+    limits = RobotLimits(max_speed=2.0, acceleration=2.5, braking=4.0)
+    realism = RealismSettings(robot_noise=0.001, heading_noise=0.004, vision_delay=0.05)
+    found = identify(driven(limits, SimSettings(realism=realism), seconds=20.0))
+    path = tmp_path / "field.yaml"
+    write_preset(found, path)
+    text = path.read_text()
+    assert "# ball.slide_deceleration: not seen enough" in text
+    assert "# blue 0.max_speed: 2" in text
+    settings = preset(str(path))
+    assert settings.limits.max_speed == pytest.approx(2.0, rel=0.03)
+    assert settings.limits.braking == pytest.approx(4.0, rel=0.03)
+    assert settings.realism.vision_delay == pytest.approx(0.05, abs=0.002)
+    # What was not seen enough is the preset's own.
+    assert settings.ball == preset("default").ball
+
+
+def test_what_was_not_seen_enough_goes_into_no_preset() -> None:
+    found = identify(driven(RobotLimits(), SimSettings(), seconds=5.0))
+    nothing = found.noise._replace(robot_noise=unseen())
+    object.__setattr__(found, "noise", nothing)
+    assert settings_from(preset_of(found)).realism.robot_noise == 0.0
+
+
+def test_the_command_prints_figures_and_writes_the_file(recording: Path, tmp_path: Path) -> None:
+    out = tmp_path / "field.yaml"
+    done = CliRunner().invoke(app, ["record", "identify", str(recording), "--out", str(out), "--json"])
+    assert done.exit_code == 0, done.stderr
+    figures = json.loads(done.stdout)["figures"]
+    assert figures["delay"]["seen"]
+    assert figures["ball.switch_share"].keys() == {"value", "low", "high", "count", "seen", "unit"}
+    assert preset(str(out)).realism.robot_noise == pytest.approx(0.001, rel=0.1)
+    shown = CliRunner().invoke(app, ["record", "identify", str(recording)])
+    assert "not seen enough" in shown.stdout
+    assert "blue 1" in shown.stdout
+
+
+def test_an_unknown_base_is_a_usage_error(recording: Path) -> None:
+    done = CliRunner().invoke(app, ["record", "identify", str(recording), "--base", "other"])
+    assert done.exit_code == 2
+    assert "no simulator preset is called 'other'" in done.stderr

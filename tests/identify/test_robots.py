@@ -1,0 +1,86 @@
+"""A robot's limits and delay are found from its commands and its motion, an opponent's from its motion."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from robobt.identify.noise import identify_noise
+from robobt.identify.opponents import identify_opponent
+from robobt.identify.robots import identify_robot
+from robobt.sim import SimSettings
+from robobt.sim.realism import RealismSettings
+from robobt.world.limits import RobotLimits
+from tests.identify.made import driven
+
+pytestmark = pytest.mark.integration
+
+LIMITS = RobotLimits(
+    max_speed=2.2, acceleration=2.6, braking=4.0, side_acceleration=2.2, side_braking=3.4, max_turn=8.0
+)
+LATE = RealismSettings(
+    robot_noise=0.001, heading_noise=0.005, missing_robot=0.02, vision_delay=0.03, command_delay=0.05
+)
+WHOLE_DELAY = (7 + 12) / 240
+"""Both delays in the simulator's steps of 1/240 s [s]."""
+
+SEEN = driven(LIMITS, SimSettings(realism=LATE))
+
+
+@pytest.mark.parametrize(
+    ("name", "truth"),
+    [
+        ("max_speed", 2.2),
+        ("acceleration", 2.6),
+        ("braking", 4.0),
+        ("side_acceleration", 2.2),
+        ("side_braking", 3.4),
+        ("gain", 1.0),
+    ],
+)
+def test_own_robots_are_known_from_commands(name: str, truth: float) -> None:
+    figure = identify_robot(SEEN, 0).figures[name]
+    assert figure.seen
+    assert figure.value == pytest.approx(truth, rel=0.03)
+
+
+def test_the_whole_delay_is_known_to_a_millisecond() -> None:
+    figure = identify_robot(SEEN, 0).figures["delay"]
+    assert figure.seen
+    assert figure.value == pytest.approx(WHOLE_DELAY, abs=0.001)
+
+
+def test_pictures_that_know_their_age_give_the_same_whole_delay() -> None:
+    aged = SEEN.between(0.0, np.inf)
+    # Taken when they show it: the simulator rounds 30 ms to 7 steps.
+    aged.times, aged.age = aged.times - 7 / 240, 7 / 240
+    assert identify_robot(aged, 0).figures["delay"].value == pytest.approx(WHOLE_DELAY, abs=0.001)
+
+
+def test_a_limit_that_was_never_met_is_not_seen_enough() -> None:
+    figure = identify_robot(SEEN, 0).figures["max_turn"]
+    assert not figure.seen
+    assert figure.text() == "not seen enough"
+
+
+@pytest.mark.parametrize(
+    ("name", "truth"), [("max_speed", 2.2), ("acceleration", 2.6), ("side_acceleration", 2.2)]
+)
+def test_opponents_are_known_without_commands(name: str, truth: float) -> None:
+    assert not SEEN.commanded(1)
+    figure = identify_opponent(SEEN, 1, 0.001).figures[name]
+    assert figure.seen
+    assert figure.value == pytest.approx(truth, rel=0.05)
+
+
+def test_delay_and_gain_of_opponents_are_not_seen() -> None:
+    figures = identify_opponent(SEEN, 1, 0.001).figures
+    assert not figures["delay"].seen
+    assert not figures["gain"].seen
+
+
+def test_noise_and_gaps_are_known() -> None:
+    found = identify_noise(SEEN)
+    assert found.robot_noise.value == pytest.approx(0.001, rel=0.1)
+    assert found.heading_noise.value == pytest.approx(0.005, rel=0.1)
+    assert found.missing_robot.value == pytest.approx(0.02, abs=0.008)
