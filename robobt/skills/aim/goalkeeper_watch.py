@@ -60,7 +60,7 @@ _BLUR = 0.05
 _ABOVE_LIMIT = 1.1
 """A robot may be faster than its limits say by this factor."""
 _FRAMES = 3
-"""A speed counts once it is held over so many frames in a row: one may be noise."""
+"""Number of frames in a row over which a speed has to be held: one may be noise."""
 _HOME = 1.5
 """Farther than this from its goal's middle a robot is not keeping it [m]."""
 _KICK_GAP = 0.2
