@@ -48,8 +48,8 @@ def collect(
         str,
         option(
             "--goalkeepers",
-            ": own is ours, at half and at full speed; real are those fitted to the paper's real shots; or a "
-            "file of 'python -m paper goalkeepers'",
+            ": own is ours, at half and at full speed; robobulls drives with RoboBulls' pilot; real are "
+            "those fitted to the paper's real shots; or a file of 'python -m paper goalkeepers'",
         ),
     ] = "own",
     workers: Workers = None,
@@ -73,7 +73,7 @@ def collect(
     from robobt.shots.keepers.population import REAL, read_population
 
     population = None
-    if goalkeepers != "own":
+    if goalkeepers not in ("own", "robobulls"):
         population = read_population(REAL if goalkeepers == "real" else Path(goalkeepers))
     settings = CollectionSettings(
         scenario=attack.value,
@@ -81,6 +81,7 @@ def collect(
         opponents=opponents,
         seed=seed,
         goalkeepers=population,
+        style="robobulls" if goalkeepers == "robobulls" else "default",
     )
     make_folders({"--out": out})
     total = count or (PAPER_COUNT if protocol is Protocol.PAPER else 1000)

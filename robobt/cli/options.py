@@ -38,6 +38,7 @@ MEANINGS = {
     "--force": "Replace what is there already",
     "--from": "Where to begin in the recording [s]",
     "--game-controller": "The official game controller's program",
+    "--goalkeeper": "Kind of goalkeeper that the shots met; else each answer rests on the outcomes before it",
     "--goalkeepers": "Whom the attacker faces",
     "--grsim-port": "Port for grSim's commands and replacements",
     "--host": "Address to serve the page at",
@@ -71,7 +72,8 @@ MEANINGS = {
     "--preset": "Training settings to start from: a preset's name or a YAML file",
     "--protocol": "Which shots to collect",
     "--publish": "Send vision, tracked frames and referee messages to other programs on this machine",
-    "--real": "Folder of the paper's shots, for the model card's test figures",
+    "--real": "Folder of the paper's shots: those to train on say how strong real goalkeepers are, "
+    "those to test on give figures for the model card",
     "--realism": "Noise and delays: none, friendly, rc2021 or realistic",
     "--record": "Record a match to this file",
     "--record-layers": "Record what skills draw in these layers too",

@@ -70,7 +70,7 @@ def train(
     make_folders({"--out": out}, folders=True)
     torch.set_num_threads(1)
     table = pa.concat_tables([read_shots(file) for file in data])
-    recorded = None if real is None else load_shot_sets(real).test
+    sets = None if real is None else load_shot_sets(real)
     with Progress(predictor.value, epochs) as progress:
         file, figures = train_shipped(
             predictor.value,
@@ -79,7 +79,8 @@ def train(
             called=name,
             seed=seed,
             epochs=epochs,
-            real=recorded,
+            real=None if sets is None else sets.test,
+            recorded=None if sets is None else sets.train,
             force=force,
             on_epoch=lambda _: progress.advance(),
         )
@@ -88,7 +89,7 @@ def train(
         return
     what = "cross-validated" if predictor is Predictor.BEST else "on shots that training never saw"
     say(f"{file}: {what}: {_figures(figures)}.")
-    if recorded is not None:
+    if sets is not None:
         say(f"On the real shots: {_figures(figures, 'real_')}.")
 
 
@@ -98,6 +99,7 @@ def score(
         Path, option("--data", ": one file, or the folder of the paper's train.csv and test.csv")
     ],
     part: Annotated[AuthorShots, option("--part", " when --data is their folder")] = AuthorShots.TEST,
+    goalkeeper: Annotated[str, option("--goalkeeper")] = "",
     as_json: Json = False,
 ) -> None:
     """Judge a shot predictor on recorded shots.
@@ -116,7 +118,7 @@ def score(
 
     shots = read_usable_shots(split_file(data, part.value) if data.is_dir() else data)
     lacking: dict[int, str] = {}
-    expected = predicted_by(model, shots.table, lacking)
+    expected = predicted_by(model, shots.table, lacking, goalkeeper)
     shots = shots.without(lacking)
     expected = expected[isfinite(expected)]
     scored, left_out = goals(shots.table), list(shots.problems.values())

@@ -15,8 +15,6 @@ from robobt.skills.team.best_field_position import BestFieldPosition
 from robobt.tree import Behaviour
 from robobt.tree.parameters import formerly
 
-_STRONG_EXPECTED_GOAL: Rater = {"name": "expected_goal", "model": "shot_expected_strong"}
-
 
 @formerly(
     model="rater: {name: expected_goal, model: ...}",
@@ -26,7 +24,7 @@ _STRONG_EXPECTED_GOAL: Rater = {"name": "expected_goal", "model": "shot_expected
 @PLAYS.register("attack_expected")
 def attack_expected(
     *,
-    rater: Rater = _STRONG_EXPECTED_GOAL,
+    rater: Rater = "expected_goal",
     min_score: float = 0.9,
     last_resort: float = 0.3,
     patience: float = 10.0,
@@ -42,8 +40,8 @@ def attack_expected(
     to the other; when ``patience`` has run out it takes the best shot available.
 
     Args:
-        rater: the shot rater, by name or with settings. The default's model knows our own goalkeeper;
-            ``shot_expected`` knows the weaker one of the paper's real shots.
+        rater: the shot rater, by name or with settings. The default learns from the match how good the
+            opponents' goalkeeper is.
         min_score: worst shot taken, 0 to 1; with the default rater the probability of a goal.
         last_resort: worst shot taken once ``patience`` has run out.
         patience: longest time to draw the goalkeeper [s].

@@ -19,7 +19,6 @@ from robobt.tree.parameters import formerly
 
 _CONFIDENT_EXPECTED_GOAL: Rater = {
     "name": "expected_goal",
-    "model": "shot_expected_strong",
     "threshold": 0.85,
 }
 

@@ -12,6 +12,7 @@ from robobt.config.figures import new_figure, save_figure
 from robobt.match.scenario.placing import HELD_DISTANCE
 from robobt.skills.aim.raters.expected_goal import ExpectedGoal
 from robobt.skills.aim.raters.goal_line import goal_candidates
+from robobt.skills.aim.raters.scene_chances import goalkeeper_kinds
 from robobt.world.field import DIVISION_B, FieldGeometry
 from robobt.world.geometry import FloatArray, Point, direction
 from robobt.world.rules import in_their_defense_area
@@ -34,9 +35,11 @@ class GoalMap:
 def goal_map(model: str = "shot_expected", spacing: float = 0.1) -> GoalMap:
     """Return the best shot's probability from every place, past a goalkeeper at rest that covers the angle.
 
-    Judged by the predictor ``model`` of the ``expected_goal`` rater, at places ``spacing`` apart [m].
+    Judged by the predictor ``model`` of the ``expected_goal`` rater, at places ``spacing`` apart [m]; where
+    it tells kinds of goalkeepers apart, past one of the kind "fitted".
     """
-    field, rater = DIVISION_B, ExpectedGoal(model=model)
+    field = DIVISION_B
+    rater = ExpectedGoal(model=model, goalkeeper="fitted" if "fitted" in goalkeeper_kinds(model) else "")
     points = goal_candidates(field)
     x = np.arange(0.0, field.half_length, spacing)
     y = np.arange(-field.half_width, field.half_width + spacing / 2.0, spacing)

@@ -113,7 +113,7 @@ class TeamStatistics:
         self._cards = dict.fromkeys(Team, 0)
         self._owner: Team | None = None
         self._owned = dict.fromkeys(Team, 0)
-        self._rater = ExpectedGoal()
+        self._rater = ExpectedGoal(goalkeeper="fitted")
 
     def update(self, frame: Frame, game: GameState, events: Iterable[ReportedEvent] = ()) -> None:
         """Take in the next frame with its state of the game and its events."""

@@ -83,6 +83,10 @@ def balanced_attempt(settings: CollectionSettings, trial: int) -> Attempt:
     }
     (blue, *_), (goalkeeper, *others) = base.robots.blue, base.robots.yellow
     taken = [shooter, start, keeper]
+    faced = "half_speed" if speed < 1.0 else "full_speed"
+    if settings.style == "robobulls":
+        faced = settings.style
+        goalkeeper = goalkeeper.model_copy(update={"params": {**goalkeeper.params, "style": settings.style}})
     opponents = [moved(goalkeeper, keeper, direction(keeper, start), flip=True, speed=speed)]
     for setup in others:
         place = _blocker(field, ball, target, taken, rng)
@@ -100,6 +104,7 @@ def balanced_attempt(settings: CollectionSettings, trial: int) -> Attempt:
         "seed": settings.seed,
         "tolerance": 0.0,
         "goalkeeper_speed": speed,
+        "goalkeeper": faced,
     }
     return Attempt(base.model_copy(update={"robots": robots}), seed, labels)
 

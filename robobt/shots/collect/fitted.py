@@ -90,7 +90,7 @@ def against_fitted(attempt: Attempt, population: Population) -> Attempt:
             }
     shooter = shooter.model_copy(update={"params": params})
     robots = scenario.robots.model_copy(update={"blue": (shooter,), "yellow": (keeper, *others)})
-    labels = {**attempt.labels, "goalkeeper_speed": 1.0, "variant": variant}
+    labels = {**attempt.labels, "goalkeeper_speed": 1.0, "goalkeeper": "fitted", "variant": variant}
     changed = scenario.model_copy(update={"robots": robots})
     return replace(attempt, scenario=changed, labels=labels, delay=traits.delay, velocities=velocities)
 

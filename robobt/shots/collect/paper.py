@@ -97,6 +97,7 @@ def paper_attempt(settings: CollectionSettings, trial: int) -> Attempt:
         "seed": settings.seed,
         "tolerance": tolerance,
         "goalkeeper_speed": 0.5,
+        "goalkeeper": "half_speed",
     }
     return Attempt(base.model_copy(update={"robots": robots}), seed, labels, section)
 

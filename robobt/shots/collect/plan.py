@@ -46,6 +46,9 @@ class CollectionSettings(Settings):
     goalkeepers: Population | None = Field(
         None, description="fitted goalkeepers to draw one from for each shot; our own without"
     )
+    style: Literal["default", "robobulls"] = Field(
+        "default", description="style of our own goalkeeper: see the play goalkeeper"
+    )
 
 
 @dataclass(frozen=True, slots=True)

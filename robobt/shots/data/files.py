@@ -18,7 +18,7 @@ from robobt.config.atomic import replacing
 from robobt.shots.data.author_data import author_table
 from robobt.shots.data.cells import Cells, Problems, read_cells, refuse
 from robobt.shots.data.problems import ShotDataError
-from robobt.shots.data.schema import SCHEMA, SHOT_COLUMNS, SHOTS_VERSION, UNKNOWN, Row
+from robobt.shots.data.schema import LATER_COLUMNS, SCHEMA, SHOT_COLUMNS, SHOTS_VERSION, UNKNOWN, Row
 
 _SEPARATOR = ";"
 """Between the numbers of a list in a cell of a CSV file."""
@@ -134,10 +134,12 @@ def _cell(value: object) -> str:
 
 def _own_table(cells: Cells) -> pa.Table:
     for name in SCHEMA.names:
-        if name not in cells.columns:
+        if name not in cells.columns and name not in LATER_COLUMNS:
             raise ShotDataError(f"{cells.file}: has no column {name!r}")
     values = {
         column.name: cells.convert(column.name, _PARSERS[column.type], UNKNOWN[column.type])
+        if column.name in cells.columns
+        else [UNKNOWN[column.type]] * len(cells.rows)
         for column in SHOT_COLUMNS
     }
     return pa.Table.from_pydict(values, SCHEMA)
@@ -170,6 +172,9 @@ _PARSERS: dict[str, Callable[[str], object]] = {"text": str, "int": _integer, "r
 def _checked(table: pa.Table, file: Path, rows: list[int], problems: Problems | None) -> pa.Table:
     """Return a table in :data:`SCHEMA`, its columns in order, after a look at what must not be missing."""
     for column in SHOT_COLUMNS:
+        if column.name in LATER_COLUMNS and column.name not in table.schema.names:
+            unknown = pa.array([UNKNOWN[column.type]] * len(table), SCHEMA.field(column.name).type)
+            table = table.append_column(column.name, unknown)
         if column.name not in table.schema.names:
             raise ShotDataError(f"{file}: has no column {column.name!r}")
         try:

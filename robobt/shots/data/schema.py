@@ -50,6 +50,7 @@ SHOT_COLUMNS = (
     Column("early_stop_split", "text", "", "train, valid (for early stopping) or test; may be empty"),
     Column("tolerance", "real", "m", "clearance that the attacker asked of the line ball -> target"),
     Column("goalkeeper_speed", "real", "1", "factor on the top speed of the opponents' goalkeeper"),
+    Column("goalkeeper", "text", "", "kind of goalkeeper, of GOALKEEPERS; empty where not known"),
     Column("time", "real", "s", "simulated time of the kick in its trial"),
     # The scene at the kick, in the field frame: the shooter attacks +x.
     Column("robot_x", "real", "m", "shooter"),
@@ -97,6 +98,15 @@ SHOT_COLUMNS = (
     Column("success", "int", "1", "1 the ball entered the goal, 0 it did not"),
 )
 """Every column, in the order of the files."""
+
+GOALKEEPERS = ("fitted", "robobulls", "half_speed", "full_speed")
+"""The kinds of goalkeepers that shots are collected against.
+
+As the paper's real shots show them; with RoboBulls' pilot; and our own at 1.125 and at 2.25 m/s.
+"""
+
+LATER_COLUMNS = frozenset({"goalkeeper"})
+"""Columns that older files lack; they are unknown there."""
 
 _ARROW_TYPES = {"text": pa.string(), "int": pa.int64(), "real": pa.float64(), "reals": pa.list_(pa.float64())}
 

@@ -2,19 +2,23 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
 import pyarrow as pa
 from numpy.typing import ArrayLike
 
+from robobt.config.errors import unknown_name
 from robobt.models.card import Measured
+from robobt.models.file import ModelError
 from robobt.models.policy import load_policy
-from robobt.shots.data.inputs import PLACE_COLUMNS, asked_inputs
+from robobt.shots.data.inputs import PLACE_COLUMNS, asked_inputs, goals
 from robobt.shots.data.problems import ShotDataError
 from robobt.shots.data.schema import SCHEMA, SHOT_COLUMNS
 from robobt.shots.predict.features import pair_features
 from robobt.shots.predict.validation import judge
+from robobt.skills.aim.goalkeeper_watch import updated
 from robobt.statistics import calibration_error, mean_interval, wilson_interval
 from robobt.world.features import SHOT
 from robobt.world.geometry import FloatArray
@@ -26,22 +30,34 @@ _NUMBER_COLUMNS = [
 ]
 
 
-def predicted_by(model: str | Path, table: pa.Table, lacking: dict[int, str] | None = None) -> FloatArray:
+def predicted_by(
+    model: str | Path, table: pa.Table, lacking: dict[int, str] | None = None, goalkeeper: str = ""
+) -> FloatArray:
     """Return the probability of a goal (n,) that a shot predictor gives each shot of a table.
 
-    It is asked as a rater asks it in play: about a kick that goes out along the line to the target.
+    It is asked as a rater asks it in play: about a kick that goes out along the line to the target. A model
+    that tells kinds of goalkeepers apart answers for the shot's own kind where the table knows it. Elsewhere
+    it knows of the goalkeeper what it would know in a match of these shots, in their order: before the first
+    one all kinds are equally likely, and each outcome changes how likely they are for the shots after it.
 
     Args:
         model: a shipped model's name, or a file.
         table: the shots, in the package's table.
         lacking: takes what is missing, by index, of the shots that lack something the model needs; their
             probability is not-a-number. With None such a shot is an error.
+        goalkeeper: the kind of goalkeeper that all shots met, by the name of the model's output; empty for
+            what the table says.
 
     Raises:
-        ModelError: there is no such model, or it is no shot predictor.
+        ModelError: there is no such model, it is no shot predictor, or it does not know that goalkeeper.
         ShotDataError: a shot lacks what the model needs to know.
     """
     policy = load_policy(model, kind="shot_predictor")
+    kinds = [output.name for output in policy.card.outputs]
+    if goalkeeper and goalkeeper not in kinds:
+        raise ModelError(
+            f"{policy.path}: knows no goalkeeper {goalkeeper!r}; {unknown_name(goalkeeper, kinds)}"
+        )
     pairs = policy.card.observation.name == SHOT.name
     inputs = _inputs(table, pairs)
     known = np.isfinite(inputs).all(axis=1)
@@ -52,7 +68,33 @@ def predicted_by(model: str | Path, table: pa.Table, lacking: dict[int, str] | N
         lacking[index] = problem
     answers = np.full(len(inputs), np.nan)
     if known.any():
-        answers[known] = np.asarray(policy(inputs[known].astype(np.float32)), dtype=np.float64).reshape(-1)
+        given = np.asarray(policy(inputs[known].astype(np.float32)), dtype=np.float64)
+        if goalkeeper:
+            answers[known] = given[:, kinds.index(goalkeeper)]
+        else:
+            answers[known] = answers_in_order(given, kinds, table.take(pa.array(np.flatnonzero(known))))
+    return answers
+
+
+def answers_in_order(by_kind: FloatArray, kinds: Sequence[str], table: pa.Table) -> FloatArray:
+    """Return the probability of a goal (n,) of each shot of a table.
+
+    Args:
+        by_kind: the probabilities past each kind of goalkeeper, (n, K).
+        kinds: the names of the kinds.
+        table: the shots; of a goalkeeper whose kind it does not know, the outcomes of the earlier ones tell.
+    """
+    if len(kinds) == 1:
+        return by_kind[:, 0]
+    answers = np.empty(len(by_kind))
+    weights = np.full(len(kinds), 1.0 / len(kinds))
+    faced = table.column("goalkeeper").to_pylist()
+    for i, (row, kind, scored) in enumerate(zip(by_kind, faced, goals(table), strict=True)):
+        if kind in kinds:
+            answers[i] = row[kinds.index(kind)]
+        else:
+            answers[i] = row @ weights
+            weights = updated(weights, row, bool(scored))
     return answers
 
 

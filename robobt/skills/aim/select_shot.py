@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from robobt.skills.aim.goalkeeper_watch import GoalkeeperWatch
 from robobt.skills.aim.raters import Rater, make_rater
 from robobt.skills.aim.raters.goal_line import judged_goal_line
+from robobt.skills.aim.raters.shot_predictor import LearnedRater
 from robobt.skills.base import Skill, skill
 from robobt.skills.store import Shot
 from robobt.tree import Status
@@ -46,10 +48,15 @@ class SelectShot(Skill):
         last, self.store.shot = self.store.shot, None
         judged, self.store.goal_line = self.store.goal_line, None
         frame = self.frame
+        watch = self.store.team.shared(GoalkeeperWatch)
+        watch.follow(frame)
         origin = self.ball.position
         if self.max_distance is not None and distance(origin, frame.field.their_goal) > self.max_distance:
             return self.fail(f"farther than {self.max_distance:g} m from the goal")
-        shots, chances = self._rater.judge(frame, origin, self.me)
+        if isinstance(self._rater, LearnedRater):
+            shots, chances = self._rater.judge(frame, origin, self.me, watch=watch)
+        else:
+            shots, chances = self._rater.judge(frame, origin, self.me)
         if chances is not None:
             self.store.goal_line = judged_goal_line(*chances, judged)
         if not shots:

@@ -13,6 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from robobt.motion.arrival import arrival_times, meetings
+from robobt.skills.aim.goalkeeper_watch import GoalkeeperWatch
 from robobt.skills.kicker import follow_restart
 from robobt.skills.plan import Task, TeamPlan
 from robobt.skills.store import Pass, TeamStore
@@ -38,6 +39,7 @@ def agree(frame: Frame, team: TeamStore) -> TeamPlan:
         return plan
     plan.frame = frame
     follow_restart(frame, team)
+    team.shared(GoalkeeperWatch).follow(frame)
     players = [robot for robot in frame.own if robot.id in plan.players]
     _look(frame, plan)
     _judge_possession(frame, team, plan)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import field, replace
 from math import hypot
 
+from robobt.skills.aim.goalkeeper_watch import GoalkeeperWatch
 from robobt.skills.aim.raters.expected_goal import ExpectedGoal
 from robobt.skills.base import Skill, skill
 from robobt.skills.rate_limit import RateLimit
@@ -57,7 +58,7 @@ class ChooseKick(Skill):
     chips: bool = True
     restart: bool = False
     max_distance: float = 5.0
-    model: str = "shot_expected_strong"
+    model: str = "shot_expected"
     _since: float = field(default=-1.0, init=False)
     _seen: float = field(default=-10.0, init=False)
     _had: float = field(default=-10.0, init=False)
@@ -157,5 +158,6 @@ class ChooseKick(Skill):
         frame, me, ball, field = self.frame, self.me, self.ball, self.frame.field
         if hypot(field.half_length - ball.x, ball.y) > self.max_distance:
             return None
-        shots = self._rater.rate_all(frame, ball.position, me)
+        watch = self.store.team.shared(GoalkeeperWatch)
+        shots, _ = self._rater.judge(frame, ball.position, me, watch=watch)
         return shots[0] if shots else None

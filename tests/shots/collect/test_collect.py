@@ -94,6 +94,14 @@ def test_places_are_even_over_range_angle_and_offset():
     assert np.histogram(bearings, bins=4, range=(-1.3, 1.3))[0].min() >= 40
 
 
+def test_a_shot_says_which_kind_of_goalkeeper_it_met(collected: Path, recorded: list[dict]):
+    assert set(read_shots(collected).column("goalkeeper").to_pylist()) == {"half_speed", "full_speed"}
+    assert {row["goalkeeper"] for row in recorded} == {"fitted"}
+    attempt = balanced_attempt(CollectionSettings(seed=5, style="robobulls"), 0)
+    assert attempt.labels["goalkeeper"] == "robobulls"
+    assert attempt.scenario.robots.yellow[0].params["style"] == "robobulls"
+
+
 def test_several_opponents_are_there_when_asked_for():
     settings = CollectionSettings(seed=5, opponents=4)
     counts = {len(balanced_attempt(settings, i).scenario.robots.yellow) for i in range(40)}

@@ -6,7 +6,7 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
 
-from robobt.shots.data.files import read_shots, write_shots
+from robobt.shots.data.files import csv_text, read_shots, write_shots
 from robobt.shots.data.problems import ShotDataError
 from robobt.shots.data.schema import SCHEMA, complete_row
 from tests.shots.real_data import REAL_SHOTS, needs_real_shots
@@ -36,6 +36,20 @@ def test_what_was_written_is_read_back(table: pa.Table, tmp_path: Path, ending: 
         for name, value in ours.items():
             assert theirs[name] == value or math.isnan(theirs[name]), name
     assert [path.name for path in tmp_path.iterdir()] == [file.name]
+
+
+@pytest.mark.parametrize("ending", ["parquet", "csv"])
+def test_a_file_from_before_goalkeepers_had_kinds_is_read(table: pa.Table, tmp_path: Path, ending: str):
+    file = tmp_path / f"shots.{ending}"
+    if ending == "parquet":
+        pq.write_table(table.drop_columns(["goalkeeper"]), file)
+    else:
+        rows = [line.split(",") for line in csv_text(table.to_pylist()).splitlines()]
+        place = rows[0].index("goalkeeper")
+        # The scenario's name, with a comma in it, comes before: counted from the end.
+        lines = [",".join([*row[: place - len(rows[0])], *row[place - len(rows[0]) + 1 :]]) for row in rows]
+        file.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    assert read_shots(file).column("goalkeeper").to_pylist() == ["", ""]
 
 
 def test_parquet_keeps_units_and_descriptions(table: pa.Table, tmp_path: Path):

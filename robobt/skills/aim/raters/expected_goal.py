@@ -2,17 +2,22 @@
 
 from __future__ import annotations
 
-import numpy as np
-from pydantic import Field
+from typing import Self
 
+import numpy as np
+from pydantic import Field, model_validator
+
+from robobt.config.errors import unknown_name
+from robobt.models.find import read_fitting_model
+from robobt.skills.aim.goalkeeper_watch import GoalkeeperWatch
 from robobt.skills.aim.raters.base import RATERS, Chances, best_first
 from robobt.skills.aim.raters.goal_line import directions, goal_candidates, lane_clearances, normal_cdf, runs
 from robobt.skills.aim.raters.openings import goal_mouth
-from robobt.skills.aim.raters.shot_predictor import LearnedRater, shot_predictor
+from robobt.skills.aim.raters.scene_chances import chances_by_kind, kind_weights
+from robobt.skills.aim.raters.shot_predictor import LearnedRater
 from robobt.skills.store import Shot
-from robobt.world.features import SCENE_OPPONENTS, SHOT_SCENE, shot_scene
-from robobt.world.geometry import FloatArray, Point, distance
-from robobt.world.records import BALL, BALL_SIZE, ROBOT, ROBOT_SIZE
+from robobt.world.features import SHOT_SCENE
+from robobt.world.geometry import FloatArray, Point
 from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS, Frame, RobotState
 
 
@@ -23,6 +28,10 @@ class ExpectedGoal(LearnedRater):
     The predictor sees the positions and velocities of all robots, in one call for the whole goal line. Its
     prediction is multiplied by the chance that a kick with a small error stays between the posts; a point
     with a robot in its lane has probability 0.
+
+    How good the opponents' goalkeeper is, a skill's rater learns from the match so far
+    (:mod:`~robobt.skills.aim.goalkeeper_watch`): the predictions past each kind that the predictor knows are
+    averaged, each as likely as that kind is.
 
     Every local maximum along the goal line is a shot with that probability as its
     score; any aim within its tolerance has at least the probability ``threshold``, or ``keep`` times the
@@ -37,12 +46,25 @@ class ExpectedGoal(LearnedRater):
         validate_default=True,
         description="predictor of a shot's scene: a shipped model or a file",
     )
+    goalkeeper: str = Field(
+        "", description="kind of goalkeeper, by the name of the model's output; empty: as the match tells"
+    )
     threshold: float = Field(0.9, ge=0, le=1, description="probability that any aim within the tolerance has")
     keep: float = Field(
         0.9, gt=0, le=1, description="the same where the maximum is below the threshold, as a share of it"
     )
     kick_error: float = Field(0.01, gt=0, le=1, description="standard deviation of the direction [rad]")
     spacing: float = Field(0.01, ge=0.001, le=1, description="between target points [m]")
+
+    @model_validator(mode="after")
+    def _known_goalkeeper(self) -> Self:
+        if self.goalkeeper:
+            outputs = read_fitting_model(self.model, kind="shot_predictor").card.outputs
+            names = [output.name for output in outputs]
+            if self.goalkeeper not in names:
+                there = unknown_name(self.goalkeeper, names)
+                raise ValueError(f"goalkeeper: {self.model} knows no {self.goalkeeper!r}; {there}")
+        return self
 
     def judge(
         self,
@@ -51,10 +73,11 @@ class ExpectedGoal(LearnedRater):
         me: RobotState,
         *,
         delay: float = 0.0,  # noqa: ARG002
+        watch: GoalkeeperWatch | None = None,
     ) -> tuple[list[Shot], Chances | None]:
-        """See :meth:`ShotRater.judge`."""
+        """See :meth:`LearnedRater.judge`."""
         points = goal_candidates(frame.field, self.spacing)
-        chances = self.chances(frame, origin, me, points)
+        chances = self.chances(frame, origin, me, points, watch)
         if chances is None:
             return [], None
         aims, (_, y) = directions(origin, points), points.T
@@ -69,7 +92,14 @@ class ExpectedGoal(LearnedRater):
             shots.append(Shot((frame.field.half_length, middle), near + half_step, score))
         return best_first(shots, origin, me.heading), (points, chances)
 
-    def chances(self, frame: Frame, origin: Point, me: RobotState, points: FloatArray) -> FloatArray | None:
+    def chances(
+        self,
+        frame: Frame,
+        origin: Point,
+        me: RobotState,
+        points: FloatArray,
+        watch: GoalkeeperWatch | None = None,
+    ) -> FloatArray | None:
         """Compute the probability of a goal for every target point, None where no shot can enter the goal.
 
         Args:
@@ -77,6 +107,7 @@ class ExpectedGoal(LearnedRater):
             origin: where the ball will be kicked from [m].
             me: the robot that kicks.
             points: (T, 2) on the opponent's goal line, from right to left [m].
+            watch: what the match so far says about the goalkeeper; None knows nothing.
 
         Returns:
             The probabilities (T,).
@@ -93,41 +124,11 @@ class ExpectedGoal(LearnedRater):
             clear = lane_clearances(origin, points, centres).min(axis=1) >= ROBOT_RADIUS + BALL_RADIUS
             chances[~clear] = 0.0
             if clear.any():
-                chances[clear] *= self._predicted(origin, me, points[clear], ahead)
+                predicted = chances_by_kind(self.model, origin, me, points[clear], ahead)
+                chances[clear] *= predicted @ kind_weights(self.model, self.goalkeeper, watch)
         result: FloatArray = chances
         return result
 
-    def _predicted(
-        self, origin: Point, me: RobotState, points: FloatArray, ahead: list[RobotState]
-    ) -> FloatArray:
-        """Predict the probability of every target point, (T,).
-
-        More robots than a scene holds are judged in groups. The shooter is assumed to point at each target
-        already with the ball in front of it, because the predictor was fitted to scenes at the moment of the
-        kick.
-        """
-        gap = distance(me.position, origin)
-        shooter = np.full((len(points), ROBOT_SIZE), (me.x, me.y, 0.0, me.vx, me.vy, 0.0), dtype=np.float64)
-        ball = np.full((len(points), BALL_SIZE), (*origin, me.vx, me.vy), dtype=np.float64)
-        heading = shooter.view(ROBOT)["heading"][:, 0]
-        heading[:] = directions(me.position, points)
-        if gap < _HELD_BALL_DISTANCE:
-            held = ball.view(BALL)[:, 0]
-            held["x"], held["y"] = me.x + gap * np.cos(heading), me.y + gap * np.sin(heading)
-        rows = np.array([(r.x, r.y, r.heading, r.vx, r.vy, r.omega) for r in ahead], dtype=np.float64)
-        scenes = [
-            shot_scene(
-                shooter, ball, points, np.tile(rows[begin : begin + SCENE_OPPONENTS], (len(points), 1, 1))
-            )
-            for begin in range(0, len(rows), SCENE_OPPONENTS)
-        ]
-        answers = shot_predictor(self.model, SHOT_SCENE)(np.concatenate(scenes))
-        predicted: FloatArray = answers.reshape(len(scenes), len(points)).min(axis=0)
-        return predicted
-
-
-_HELD_BALL_DISTANCE = 0.13
-"""A ball closer to the robot's centre than this turns with the robot [m]."""
 
 _SAME = 0.02
 """Probabilities that differ by less than this count as one maximum."""

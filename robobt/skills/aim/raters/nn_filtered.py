@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from pydantic import Field
 
+from robobt.skills.aim.goalkeeper_watch import GoalkeeperWatch
 from robobt.skills.aim.raters.base import RATERS, Chances
 from robobt.skills.aim.raters.goal_line import goal_candidates, lane_clearances, obstacles, shots_at_groups
 from robobt.skills.aim.raters.shot_predictor import LearnedRater, shot_predictor
@@ -47,8 +48,9 @@ class NNFiltered(LearnedRater):
         me: RobotState,
         *,
         delay: float = 0.0,  # noqa: ARG002
+        watch: GoalkeeperWatch | None = None,  # noqa: ARG002
     ) -> tuple[list[Shot], Chances | None]:
-        """See :meth:`ShotRater.judge`; a point that is not clear has no chance."""
+        """See :meth:`LearnedRater.judge`; a point that is not clear has no chance."""
         if origin[0] >= frame.field.half_length:
             return [], None
         points = goal_candidates(frame.field, self.spacing)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import abstractmethod
 from contextlib import suppress
 from functools import lru_cache
 from typing import TYPE_CHECKING, ClassVar
@@ -11,7 +12,8 @@ from pydantic import field_validator
 from robobt.models.checks.source import checked_members
 from robobt.models.file import ModelError, unpack_archive
 from robobt.models.find import read_fitting_model
-from robobt.skills.aim.raters.base import ShotRater
+from robobt.skills.aim.goalkeeper_watch import GoalkeeperWatch
+from robobt.skills.aim.raters.base import Chances, ShotRater
 from robobt.skills.store import Shot
 from robobt.world.features import ObservationSpec
 from robobt.world.geometry import Point
@@ -76,6 +78,22 @@ class LearnedRater(ShotRater):
     def _usable(cls, model: str) -> str:
         check_shot_predictor(model, cls.observation)
         return model
+
+    @abstractmethod
+    def judge(
+        self,
+        frame: Frame,
+        origin: Point,
+        me: RobotState,
+        *,
+        delay: float = 0.0,
+        watch: GoalkeeperWatch | None = None,
+    ) -> tuple[list[Shot], Chances | None]:
+        """Return the openings, and the chance at every point of the goal line.
+
+        ``watch`` is what the match so far says about the opponents' goalkeeper; the other arguments are as
+        for :meth:`ShotRater.rate_all`.
+        """
 
     def rate_all(self, frame: Frame, origin: Point, me: RobotState, *, delay: float = 0.0) -> list[Shot]:
         """See :meth:`ShotRater.rate_all`."""

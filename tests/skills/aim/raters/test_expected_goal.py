@@ -3,6 +3,8 @@ from math import pi
 import numpy as np
 import pytest
 
+from robobt.shots.data.schema import GOALKEEPERS as KINDS
+from robobt.skills.aim.goalkeeper_watch import GoalkeeperWatch, SeenShot
 from robobt.skills.aim.raters import ExpectedGoal
 from robobt.skills.aim.raters.goal_line import goal_candidates
 from robobt.testing import frame, held, robot
@@ -74,3 +76,37 @@ def test_robots_behind_the_shooter_do_not_count():
 def test_a_model_that_judges_something_else_is_refused():
     with pytest.raises(ValueError, match=r"shot_nn.*takes the observation"):
         ExpectedGoal(model="shot_nn")
+
+
+def test_the_better_the_goalkeeper_the_less_a_shot_past_it_is_worth():
+    keeper = robot(4.2, 0.3, pi)
+    scene = frame(ME, BALL, opponents=(keeper,))
+    found = [ExpectedGoal(goalkeeper=kind).chances(scene, BALL, ME, POINTS) for kind in KINDS]
+    weak, *_, strong = [chances.mean() for chances in found if chances is not None]
+    unknown = RATER.chances(scene, BALL, ME, POINTS)
+    assert unknown is not None
+    assert strong < unknown.mean() < weak
+
+
+def test_what_a_match_says_of_the_goalkeeper_changes_what_a_shot_is_worth():
+    keeper, watch = robot(4.2, 0.3, pi), GoalkeeperWatch()
+    scene = frame(ME, BALL, opponents=(keeper,))
+    before = RATER.chances(scene, BALL, ME, POINTS, watch)
+    # Where only a weak goalkeeper lets it in.
+    weak, strong = [
+        ExpectedGoal(goalkeeper=kind).chances(scene, BALL, ME, POINTS) for kind in (KINDS[0], KINDS[-1])
+    ]
+    assert weak is not None
+    assert strong is not None
+    y = float(POINTS[np.argmax(weak - strong), 1])
+    watch.shots += [SeenShot(scene, ME, y, scored=True)] * 5
+    after = RATER.chances(scene, BALL, ME, POINTS, watch)
+    assert before is not None
+    assert after is not None
+    assert before == pytest.approx(RATER.chances(scene, BALL, ME, POINTS))
+    assert after.mean() > before.mean()
+
+
+def test_a_kind_of_goalkeeper_that_the_model_does_not_know_is_refused():
+    with pytest.raises(ValueError, match=r"goalkeeper.*'quick'.*full_speed"):
+        ExpectedGoal(goalkeeper="quick")
