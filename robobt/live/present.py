@@ -7,14 +7,18 @@ from typing import Any
 
 
 class Present:
-    """Gathers changes by the names of :class:`~robobt.match.recording.stream.TickChanges`."""
+    """Gathers changes by the names of :class:`~robobt.match.recording.stream.TickChanges`.
+
+    Attributes:
+        lasting: the changes that concern no tree and no drawing: the referee's state and the last touch.
+    """
 
     def __init__(self) -> None:
         self._statuses: dict[str, str] = {}
         self._feedback: dict[str, dict[int, str]] = {}
         self._written: dict[str, dict[str, Any]] = {}
         self._drawn: dict[str, list[Any]] = {}
-        self._lasting: dict[str, Any] = {}
+        self.lasting: dict[str, Any] = {}
 
     def follow(self, changes: Mapping[str, Any]) -> None:
         """Take the changes of the next tick."""
@@ -26,7 +30,7 @@ class Present:
         self._drawn.update(changes.get("drawn", ()))
         for name in ("game", "touch"):
             if name in changes:
-                self._lasting[name] = changes[name]
+                self.lasting[name] = changes[name]
 
     def changes(self) -> dict[str, Any]:
         """Return the complete state, in the form of the changes of a first tick."""
@@ -36,4 +40,4 @@ class Present:
             "drawn": dict(self._drawn),
             "written": {owner: dict(values) for owner, values in self._written.items()},
         }
-        return {**{name: value for name, value in told.items() if value}, **self._lasting}
+        return {**{name: value for name, value in told.items() if value}, **self.lasting}

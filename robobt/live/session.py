@@ -220,11 +220,11 @@ class Live:
             self._do(*self._server.inbox.get(timeout=IDLE_POLL), match)
         self._due = self._clock()
 
-    def _show(self, match: MatchLoop) -> None:
-        """Show the match as it is captured now."""
+    def _show(self, match: MatchLoop, after: Stream | None = None) -> None:
+        """Show the match as it is captured now, after what was shown of it before."""
         capture = match.capture()
         if capture is not self._capture:
-            self._capture, self._stream = capture, Stream(capture)
+            self._capture, self._stream = capture, Stream(capture, after)
             self._layers, self._named, self._known = None, capture.layers, 0
             self._server.show(self._stream)
 
@@ -253,7 +253,7 @@ class Live:
             case _ if self._hands is not None:
                 self._hands.do(act, self._clock(), arrived)
                 # Another tree may have begun another capture.
-                self._show(match)
+                self._show(match, self._stream)
 
     def _pace(self) -> None:
         """Wait for the time of the next tick."""

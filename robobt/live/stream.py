@@ -78,6 +78,8 @@ class Stream:
 
     Args:
         source: a match that is captured, or the header of ticks that are added.
+        after: the stream of the same match until now, with the same robots; its last tick is shown until
+            this one has a tick.
 
     Attributes:
         header: the constant part, as sent to the page.
@@ -85,7 +87,7 @@ class Stream:
         end: number of the next message.
     """
 
-    def __init__(self, source: Capture | RecordingHeader) -> None:
+    def __init__(self, source: Capture | RecordingHeader, after: Stream | None = None) -> None:
         self._encoder: TickEncoder | None = None
         if isinstance(source, Capture):
             self._encoder = TickEncoder(source)
@@ -96,7 +98,9 @@ class Stream:
         self._waiting: deque[tuple[float, CapturedTick]] = deque(maxlen=_MOST_WAITING_TICKS)
         self._encoded: deque[tuple[float, EncodedTicks]] = deque(maxlen=_MOST_WAITING_TICKS)
         self._segments: deque[_Segment] = deque()
-        self._last: EncodedTicks | None = None
+        self._last: EncodedTicks | None = after and after._last
+        if after is not None:
+            self._present.follow(after._present.lasting)
         self.header: dict[str, Any] = {"version": PROTOCOL_VERSION, **header_data(self._header, paths=True)}
         self.first = self.end = 0
         # When the newest tick came, and how long after the one before [s].

@@ -69,11 +69,11 @@ class MatchCapture:
     def change_tree(self, before: TreeRunner, player: Player, play: str) -> None:
         """Capture a robot's new tree.
 
-        A tree with other nodes starts a new capture and, if the match is recorded, a new file: ``match-2``
-        after ``match``.
+        A tree with other nodes or parameters starts a new capture and, if the match is recorded, a new file:
+        ``match-2`` after ``match``.
         """
         self._plays[player.robot] = play
-        if self._capture is not None and not self._capture.change_tree(before, player.runner):
+        if self._capture is not None and not self._capture.change_tree(before, player.runner, play):
             self.close(None)
             self._capture = self._begin()
 

@@ -128,8 +128,11 @@ document.querySelectorAll('#tree .row')[place].click(); return place;"""
     # The form shows what was typed before the match has heard of it; a change makes another tree.
     player = session.match.players[3]
     soon(lambda: player.runner.nodes[place].parameters()[name] == 0.37)  # type: ignore[attr-defined]
+    live.wait("return window.robobt.match.robots[3].nodes[arguments[0]].detail.includes('=0.37')", place)
+    # Paused, the page goes on showing where the robots are.
+    live.wait("return window.robobt.match.frames === 1")
     play(live, session, 2)
-    assert live.js("return window.robobt.match.frames") >= 5
+    assert live.js("return window.robobt.match.frames") >= 2
 
 
 def test_what_is_typed_stays_whatever_the_match_tells(live: Page, session: Session) -> None:
@@ -201,6 +204,9 @@ def test_a_wrong_value_is_told_and_changes_nothing(live: Page, session: Session)
     live.js("arguments[0].value = '-1e9'", field)
     live.button("Apply").click()
     live.wait("return document.querySelector('.told').textContent !== ''")
+    live.js("arguments[0].value = '0.5'", field)
+    live.button("Apply").click()
+    assert live.js("return document.querySelector('.told').textContent") == ""
 
 
 def test_the_referee_is_told_to_stop(live: Page, session: Session) -> None:

@@ -117,7 +117,26 @@ def test_parameters_of_a_play_are_changed_and_checked(match: MatchLoop) -> None:
     assert {parameter.name: value for parameter, value in steering.parameters(STRIKER)} == after
 
 
-def test_a_skill_gets_other_parameters_in_the_same_recording(match: MatchLoop, tmp_path: Path) -> None:
+def test_a_play_with_other_parameters_is_captured_with_them(match: MatchLoop, tmp_path: Path) -> None:
+    def shown() -> list[str]:
+        return [node.detail for node in match.capture().header.robots[0].tree]
+
+    steering = Steering(match)
+    before = match.capture()
+    assert not any("max_distance=0.7" in detail for detail in shown())
+    steering.play(STRIKER, "attack_main", {"max_distance": 0.7})
+    assert any("max_distance=0.7" in detail for detail in shown())
+    after = match.capture()
+    assert after is not before
+    steering.play(STRIKER, "attack_main", {"max_distance": 0.7})
+    assert match.capture() is after
+    match.tick()
+    match.close()
+    recording = load_recording(tmp_path / "m-2.robobt.arrows")
+    assert any("max_distance=0.7" in node.detail for node in recording.header.robots[0].tree)
+
+
+def test_a_skill_with_other_parameters_begins_another_recording(match: MatchLoop, tmp_path: Path) -> None:
     steering = Steering(match)
     robot = match.capture().header.robots[0]
     path = next(node.path for node in robot.tree if node.type == "GoToBall")
@@ -131,10 +150,11 @@ def test_a_skill_gets_other_parameters_in_the_same_recording(match: MatchLoop, t
     with pytest.raises(SteeringError, match="no node"):
         steering.change_skill(STRIKER, "no/such/node", {})
     match.close()
-    recording = load_recording(tmp_path / "m.robobt.arrows")
-    assert len(recording) == 5
-    assert "R" in recording.letters_at(STRIKER, 4)
-    assert not (tmp_path / "m-2.robobt.arrows").exists()
+    recording = load_recording(tmp_path / "m-2.robobt.arrows")
+    assert len(recording) == 4
+    assert "R" in recording.letters_at(STRIKER, 3)
+    node = next(node for node in recording.header.robots[0].tree if node.path == path)
+    assert f"{number.name}=0.123" in node.detail
 
 
 def test_a_play_that_cannot_be_built_leaves_the_match_as_it_is(

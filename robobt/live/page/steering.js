@@ -183,6 +183,8 @@ const showForm = (form, plays, steers) => {
       /* Of a play all that differs from what it was given, of a skill only what was changed here. */
       for (const [name, read, before] of reads) { const value = read(); if (JSON.stringify(value) !== before || !form.path && play.value === form.play) params[name] = value; }
     } catch { bridge.say("A value is written in a form that cannot be read: lists are [1, 2], texts \"so\"."); return; }
+    /* What was wrong with an earlier value is wrong no more, or is said again. */
+    bridge.say("");
     for (const each of shown.inputs) each.told = typedIn(each.input);
     if (form.path) bridge.act({ do: "skill", robot: form.robot, path: form.path, params });
     else bridge.act({ do: "play", robot: form.robot, play: play.value, params: play.value === form.play ? params : {}, team: all.checked });

@@ -99,11 +99,21 @@ class Capture:
         self._events: list[Event] = []
         self._ticks, self._round = 0, max(1, round(_LOOK_AGAIN / header.period))
 
-    def change_tree(self, before: TreeRunner, after: TreeRunner) -> bool:
-        """Watch another tree in place of one; return False if its nodes differ from the header's."""
+    def change_tree(self, before: TreeRunner, after: TreeRunner, play: str) -> bool:
+        """Watch another tree in place of one.
+
+        Args:
+            before: the runner of the tree that was watched.
+            after: the runner of the new tree.
+            play: name of the new tree's play.
+
+        Returns:
+            False, and nothing is changed, if the header shows another play, other nodes or parameters.
+        """
         for place, watch in enumerate(self.trees.each):
             if watch.runner is before:
-                if _shape(before) != _shape(after):
+                shown = next(robot for robot in self.header.robots if robot.id == self.robots[place])
+                if _with_tree(shown.model_copy(update={"play": play}), after) != shown:
                     return False
                 self.trees.replace(place, after)
                 return True
@@ -214,11 +224,6 @@ class _Layers:
 
     def __contains__(self, layer: object) -> bool:
         return any(layer in wanted for wanted in self.of)
-
-
-def _shape(runner: TreeRunner) -> list[tuple[str, type]]:
-    paths = [path for _, path in node_ids(runner.nodes)]
-    return [(path, type(node)) for path, node in zip(paths, runner.nodes, strict=True)]
 
 
 def _with_tree(robot: RecordedRobot, runner: TreeRunner | None) -> RecordedRobot:
