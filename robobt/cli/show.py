@@ -103,7 +103,11 @@ def show(
 
         show_model(name, out, as_json=as_json)
     else:
-        list_registered(_PLURALS[what], name, as_json=as_json)
+        from robobt.plays.private_files import private_files, split_play
+        from robobt.tree.namespace import within
+
+        with within(private_files(name)):
+            list_registered(_PLURALS[what], split_play(name)[1], as_json=as_json)
 
 
 def _check(
@@ -174,7 +178,9 @@ def _kind_of_file(name: str) -> ThingKind | None:
         return ThingKind.RECORDING
     if lowered.endswith((".pt", ".onnx")):
         return ThingKind.MODEL
-    if lowered.endswith((".xml", ".btproj", ".py")) or ".py:" in name:
+    if ".py:" in name:
+        return _kind_in_python(name)
+    if lowered.endswith((".xml", ".btproj", ".py")):
         return ThingKind.PLAY
     if lowered.endswith((".html", ".htm")):
         raise typer.BadParameter("is a page: open it in a browser", param_hint="NAME")
@@ -183,6 +189,23 @@ def _kind_of_file(name: str) -> ThingKind | None:
 
         return ThingKind.SCENARIO if "robots" in read_yaml(Path(name)) else ThingKind.PLAY
     return None
+
+
+def _kind_in_python(name: str) -> ThingKind:
+    """Return what a name in Python files is, as in ``my_team.py:striker``; a play if it is nothing else."""
+    from robobt.plays.private_files import private_files, split_play
+    from robobt.plays.sources import PythonFileError
+    from robobt.tree.namespace import within
+
+    try:
+        owner, (_, inner) = private_files(name), split_play(name)
+    except PythonFileError:
+        # Whoever shows the play says what is wrong with the file.
+        return ThingKind.PLAY
+    with within(owner):
+        kinds = [kind for kind in _PLURALS if kind is not ThingKind.TASK]
+        found = [kind for kind in kinds if registered(_PLURALS[kind], inner)]
+        return found[0] if found and not registered("plays", inner) else ThingKind.PLAY
 
 
 def _is_task(name: str) -> bool:

@@ -13,11 +13,13 @@ from rich.markup import escape
 
 from robobt.cli.common import (
     MAX_SEED,
+    Imports,
     Json,
     Workers,
     console,
     cores,
     errors,
+    import_files,
     parse_assignments,
     print_json,
     say,
@@ -72,6 +74,7 @@ def train(
         bool, option("--live", ": the policy of each evaluation; training waits meanwhile")
     ] = False,
     page: Page,
+    imports: Imports = None,
     as_json: Json = False,
 ) -> None:
     """Train a skill, and judge it on starts that training and choosing never saw.
@@ -89,6 +92,7 @@ def train(
     from robobt.learning.training.seeds import train_seeds
 
     page.check(live)
+    import_files(imports)
     settings = _settings(task, preset, changes or [])
     folder = out or Path("runs") / f"{task.rpartition(':')[2]}-{Path(preset).stem}"
     make_folders({"--out": folder}, folders=True)

@@ -36,6 +36,16 @@ _PAGE_SCRIPTS = """<script type="application/json" id="recording">{data}</script
 {script}</script>"""
 
 
+_TITLE_END = " · robobt replay"
+"""How the titles of replay pages end."""
+
+
+def is_replay(path: Path) -> bool:
+    """Return whether the file at ``path`` begins as a page that :func:`write_html` has written."""
+    with path.open("rb") as file:
+        return f"{_TITLE_END}</title>".encode() in file.read(2**16)
+
+
 def write_html(recording: Recording | str | Path, path: str | Path) -> Path:
     """Write the page of a recording, or of a recording's file, and return where it is."""
     if not isinstance(recording, Recording):
@@ -48,7 +58,7 @@ def write_html(recording: Recording | str | Path, path: str | Path) -> Path:
 def replay_html(recording: Recording) -> str:
     """Return the page: field, robots, ball, timeline, and the tree of the robot that is selected."""
     header = recording.header
-    title = html.escape(f"{header.scenario or 'match'}, trial {header.trial} · robobt replay")
+    title = html.escape(f"{header.scenario or 'match'}, trial {header.trial}{_TITLE_END}")
     # Cut the page before anything is put in: what a recording says may look like a place to fill.
     start, rest = page_text("viewer.html").split("{{title}}")
     middle, rest = rest.split("{{head}}")

@@ -98,7 +98,7 @@ class Stream:
         self._waiting: deque[tuple[float, CapturedTick]] = deque(maxlen=_MOST_WAITING_TICKS)
         self._encoded: deque[tuple[float, EncodedTicks]] = deque(maxlen=_MOST_WAITING_TICKS)
         self._segments: deque[_Segment] = deque()
-        self._last: EncodedTicks | None = after and after._last
+        self._last: EncodedTicks | None = None if after is None else after._last
         if after is not None:
             self._present.follow(after._present.lasting)
         self.header: dict[str, Any] = {"version": PROTOCOL_VERSION, **header_data(self._header, paths=True)}

@@ -269,6 +269,15 @@ class TestReplay:
         robobt("show", recording, "--out", tmp_path / "b.html")
         assert (tmp_path / "a.html").read_text() == (tmp_path / "b.html").read_text()
 
+    def test_a_page_replaces_no_page_but_a_replay(self, scenario: Path, tmp_path: Path):
+        recording, page = tmp_path / "a.robobt.arrows", tmp_path / "a.html"
+        robobt("match", scenario, "--record", recording)
+        page.write_text("<title>my notes</title>")
+        assert "is there already and no replay" in complaint("show", recording, code=2)
+        assert page.read_text() == "<title>my notes</title>"
+        robobt("show", recording, "--out", page)
+        robobt("show", recording)
+
     def test_a_page_does_not_replace_its_recording(self, scenario: Path, tmp_path: Path):
         recording = tmp_path / "a.robobt.arrows"
         robobt("match", scenario, "--record", recording)
@@ -389,6 +398,9 @@ class TestLists:
         assert "Nothing at all." in robobt("list", "plays", "--import", mine).stdout
         (listed,) = told("show", "Idle", "--import", mine)["skills"]
         assert listed["description"] == "Does nothing."
+        for kind in ((), ("--kind", "skill")):
+            assert told("show", f"{mine}:Idle", *kind)["skills"] == [listed]
+        assert "no play is called 'Nothing' in" in complaint("show", f"{mine}:Nothing", code=2)
 
     def test_one_can_be_looked_at_alone(self):
         assert len(told("show", "KickToTarget")["skills"]) == 1
@@ -414,6 +426,16 @@ class TestTree:
         robobt("show", "goalkeeper", "--out", dot)
         assert svg.read_text().startswith("<svg")
         assert dot.read_text().startswith("digraph")
+
+    def test_a_copy_of_a_play_keeps_its_name(self, tmp_path: Path):
+        mine, tree, copy = tmp_path / "mine.py", tmp_path / "tree.yaml", tmp_path / "copy.yaml"
+        mine.write_text(
+            "from robobt import play\nfrom robobt.skills import Stop\nidle = play('idle')(lambda: Stop())\n"
+        )
+        tree.write_text("play: my_play\ntree: Stop\n")
+        for play, name in ((tree, "my_play"), (f"{mine}:idle", "idle"), ("goalkeeper", "goalkeeper")):
+            robobt("show", play, "--out", copy)
+            assert copy.read_text().startswith((f"play: {name}\n", f"{{play: {name},"))
 
     @pytest.mark.parametrize(
         ("arguments", "said"),

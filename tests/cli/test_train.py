@@ -6,10 +6,12 @@ import pytest
 from typer.testing import CliRunner
 
 from robobt.cli import app
+from robobt.learning import TASKS
 from robobt.learning.training.demonstrations import read_demonstrations
 from robobt.learning.training.run_folder import load_run
 from tests.learning.tiny import draw_no_curves
 from tests.learning.training.test_seeds import SHORT
+from tests.registries import temporarily
 
 OPTIONS = [part for name, value in SHORT.items() for part in ("--set", f"{name}={json.dumps(value)}")]
 
@@ -43,6 +45,25 @@ def test_the_seed_of_the_settings_is_the_first_unless_another_is_asked_for(tmp_p
         "train", "go_to_ball", *OPTIONS, "--set", "seed=7", "--seed", 0, "--out", tmp_path / "a", "--json"
     )
     assert json.loads(asked.stdout)["together"]["seeds"] == [0]
+
+
+def test_a_task_that_a_file_registers_is_found_by_its_name(tmp_path, monkeypatch):
+    mine = tmp_path / "mine.py"
+    mine.write_text(
+        "from robobt.learning import TASKS, GoToBallTask\n\n\n"
+        "@TASKS.register('my_go_to_ball')\nclass Mine(GoToBallTask):\n    name = 'my_go_to_ball'\n"
+    )
+    trained = []
+
+    def train_seeds(settings, seeds, *_):
+        trained.append((settings.task, [*seeds]))
+        return []
+
+    monkeypatch.setattr("robobt.learning.training.seeds.train_seeds", train_seeds)
+    with temporarily(TASKS):
+        told = run("train", "my_go_to_ball", "--import", mine, "--out", tmp_path / "run")
+    assert told.exit_code == 0, told.output
+    assert trained == [("my_go_to_ball", [0])]
 
 
 @pytest.mark.integration

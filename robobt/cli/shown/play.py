@@ -57,7 +57,7 @@ def show_play(text: str, out: Path | None, examined: Examined, *, as_json: bool)
     if out is not None:
         if out.exists() and Path(play).exists() and out.samefile(play):
             raise typer.BadParameter("is the tree itself; give another name", param_hint="--out")
-        _write(root, Path(play).stem, out)
+        _write(root, _name_of(play), out)
         if not as_json:
             say(f"Tree: {out}")
     data: dict[str, object] = {"play": play}
@@ -80,6 +80,15 @@ def show_play(text: str, out: Path | None, examined: Examined, *, as_json: bool)
         say(tree_text(root))
     if examined.lint and wiring:
         raise typer.Exit(1)
+
+
+def _name_of(play: str) -> str:
+    """Return a play's name without its Python files; the name that a tree file gives, if it is one's."""
+    from robobt.plays.files import find_play, is_play_file
+    from robobt.plays.private_files import split_play
+
+    inner = split_play(play)[1]
+    return find_play(play).__name__ if is_play_file(inner) else inner
 
 
 def _write(root: Behaviour, name: str, out: Path) -> None:

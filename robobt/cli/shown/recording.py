@@ -58,24 +58,34 @@ def show_recording(recording: Path, out: Path | None, shown: Shown, page: Page) 
 
     with recording_file(recording) as file:
         loaded = load_recording(file)
-    if out is None:
-        stem = recording.name.removesuffix(".gz").removesuffix(".log").removesuffix(RECORDING)
-        out = recording.with_name(f"{stem}{PAGE}")
-    if out.exists() and out.samefile(recording):
+    stem = recording.name.removesuffix(".gz").removesuffix(".log").removesuffix(RECORDING)
+    target = recording.with_name(f"{stem}{PAGE}") if out is None else out
+    if target.exists() and target.samefile(recording):
         raise typer.BadParameter("is the recording itself; give another name", param_hint="--out")
-    if out.suffix.lower() in (".gif", ".png"):
+    if out is None:
+        _check_replaced(target)
+    if target.suffix.lower() in (".gif", ".png"):
         from robobt.cli.recordings import recorded_robot
         from robobt.live.replay_picture import write_gif, write_png
 
         who = None if shown.robot is None else recorded_robot(loaded, shown.robot)
-        if out.suffix.lower() == ".gif":
-            say(f"Animation: {write_gif(loaded, out, shown.start, shown.end, who)}")
+        if target.suffix.lower() == ".gif":
+            say(f"Animation: {write_gif(loaded, target, shown.start, shown.end, who)}")
         else:
-            say(f"Picture: {write_png(loaded, out, shown.start, who)}")
+            say(f"Picture: {write_png(loaded, target, shown.start, who)}")
         return
     from robobt.live.replay_html import write_html
 
-    say(f"Page: {write_html(loaded, out)}")
+    say(f"Page: {write_html(loaded, target)}")
+
+
+def _check_replaced(page: Path) -> None:
+    """Refuse to replace a page that this command has not written, where nobody has named it."""
+    from robobt.live.replay_html import is_replay
+
+    if page.is_file() and not is_replay(page):
+        there = f"{page} is there already and no replay; name another page"
+        raise typer.BadParameter(there, param_hint="--out")
 
 
 def _show(recording: Path, start: float, page: Page) -> None:
