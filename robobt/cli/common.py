@@ -20,9 +20,9 @@ from typing import TYPE_CHECKING, Annotated, ParamSpec, TypeVar
 
 import typer
 from rich.markup import escape
-from rich.table import Column, Table
 
 from robobt.cli.options import option
+from robobt.cli.screen import FittedTable
 from robobt.cli.screen import console as console
 from robobt.cli.screen import errors as errors
 from robobt.config.errors import ConfigError, RobobtError, unknown_name
@@ -237,9 +237,9 @@ def print_json(data: Mapping[str, object]) -> None:
     sys.stdout.write(json.dumps(data, indent=2, allow_nan=False, default=asdict) + "\n")
 
 
-def table(*columns: str) -> Table:
-    """Return an empty table without lines, to be printed on ``console``; long words are broken, not cut."""
-    return Table(*[Column(name, overflow="fold") for name in columns], box=None, padding=(0, 2, 0, 0))
+def table(*columns: str) -> FittedTable:
+    """Return an empty table without lines, to be printed on ``console``."""
+    return FittedTable(*columns)
 
 
 _WORDS = re.compile(r"[^\s:,/|]*[\s:,/|]*")

@@ -10,7 +10,7 @@ from io import StringIO
 import pytest
 from rich.console import Console
 
-from robobt.cli.screen import drop_odd_sizes
+from robobt.cli.screen import FittedTable, drop_odd_sizes
 from robobt.cli.shown import scenarios
 from tests.waiting import LIMIT
 
@@ -89,3 +89,39 @@ def test_warnings_are_told_but_not_each_failure_of_a_tree() -> None:
     )
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, timeout=LIMIT)
     assert done.stderr == "two senders\n"
+
+
+def lines_of(table: FittedTable, width: int) -> list[str]:
+    printed = StringIO()
+    Console(file=printed, width=width).print(table)
+    return [line.rstrip() for line in printed.getvalue().splitlines()]
+
+
+def listed() -> FittedTable:
+    table = FittedTable("model", "observation", "results")
+    table.columns[0].no_wrap = True
+    table.add_row("go_to_ball_ppo", "go_to_ball_among v2", "success 0.9, time 3.2 s")
+    return table
+
+
+def test_a_table_that_fits_is_printed_as_it_is() -> None:
+    assert lines_of(listed(), 80) == [
+        "model           observation          results",
+        "go_to_ball_ppo  go_to_ball_among v2  success 0.9, time 3.2 s",
+    ]
+
+
+@pytest.mark.parametrize(("width", "allowed"), [(50, ""), (42, "_"), (34, "_")])
+def test_a_narrow_table_is_broken_between_words_and_then_parts_of_names(width: int, allowed: str) -> None:
+    lines = lines_of(listed(), width)
+    assert max(map(len, lines)) <= width
+    words = " ".join(lines).split()
+    whole = {"model", "observation", "results", "go_to_ball_ppo", "go_to_ball_among", "v2", "success", "0.9,"}
+    whole |= {"time", "3.2", "s"}
+    parts = {"go_", "to_", "ball_", "go_to_", "go_to_ball_", "to_ball_", "ppo", "among"} if allowed else set()
+    assert set(words) <= whole | parts
+
+
+def test_a_table_for_which_there_is_no_room_at_all_is_printed_whole() -> None:
+    printed = "".join("".join(lines_of(listed(), 20)).split())
+    assert all(letter in printed for letter in "modelobservationresults")

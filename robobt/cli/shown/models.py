@@ -107,7 +107,7 @@ def model_data(file: ModelFile) -> dict[str, object]:
 
 
 def _print_table(files: list[ModelFile]) -> None:
-    listed = table("model", "skill", "algorithm", "observation", "KiB", "held-out results")
+    listed = table("model", "skill", "algorithm", "observation", "held-out results")
     listed.columns[0].no_wrap = True
     for file in files:
         card = file.card
@@ -119,7 +119,6 @@ def _print_table(files: list[ModelFile]) -> None:
             escape(card.skill),
             escape(card.algorithm),
             escape(f"{card.observation.name} v{card.observation.version}"),
-            f"{file.size / 1024:.0f}",
             escape(", ".join(figures)),
         )
     console.print(listed)

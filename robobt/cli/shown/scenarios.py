@@ -54,8 +54,7 @@ def _print_list(files: Mapping[str, Path]) -> None:
     from robobt.config.yaml import read_yaml
 
     listed = table("scenario", "robots", "trials", "what it is")
-    # Names stay whole, except where there is no room for them and a second column.
-    listed.columns[0].no_wrap = console.width >= 2 * max(map(len, files))
+    listed.columns[0].no_wrap = True
     for name, path in files.items():
         data = read_yaml(path)
         size = " v ".join(str(len(data["robots"].get(team, ()))) for team in ("blue", "yellow"))
