@@ -8,7 +8,8 @@ from pathlib import Path
 
 from robobt.config.errors import short_repr, unknown_name
 from robobt.config.process import users_code
-from robobt.models.find import rename_models
+from robobt.models.file import SUFFIXES, ModelError
+from robobt.models.find import find_model, rename_models
 from robobt.plays.base import PLAYS, Play
 from robobt.plays.baselines.go_round import GoRound
 from robobt.plays.mistakes import PlayError, check_returned, mistake_in_play
@@ -88,10 +89,23 @@ def problem_with_play(name: str) -> str | None:
     with within(owner):
         if is_play_file(inner) or inner in PLAYS:
             return None
+        if _is_model(inner):
+            return (
+                f"{short_repr(inner)} is a model, not a play; name a play that takes it as a parameter, as "
+                f"'attack_learned:policy={inner}' ('robobt show {inner}' names its skill)"
+            )
         return PLAYS.problem_with(inner) or (
             f"no play is called {short_repr(inner)}{where}; {unknown_name(inner, PLAYS)}; "
             "those of your own files come with --import FILE or as FILE.py:NAME"
         )
+
+
+def _is_model(name: str) -> bool:
+    try:
+        file = find_model(name)
+    except ModelError:
+        return False
+    return file.suffix in SUFFIXES.values() and file.is_file()
 
 
 def find_play(name: str, folder: str | Path = ".") -> Play:

@@ -7,9 +7,12 @@ from math import cos, hypot, sin
 from pathlib import Path
 
 import numpy as np
+from pydantic import ValidationError
 
 from robobt.config.figures import new_figure, save_figure
+from robobt.config.validation import first_problem
 from robobt.match.scenario.placing import HELD_DISTANCE
+from robobt.models.file import ModelError
 from robobt.skills.aim.raters.expected_goal import ExpectedGoal
 from robobt.skills.aim.raters.goal_line import goal_candidates
 from robobt.skills.aim.raters.scene_chances import goalkeeper_kinds
@@ -37,9 +40,15 @@ def goal_map(model: str = "shot_expected", spacing: float = 0.1) -> GoalMap:
 
     Judged by the predictor ``model`` of the ``expected_goal`` rater, at places ``spacing`` apart [m]; where
     it tells kinds of goalkeepers apart, past one of the kind "fitted".
+
+    Raises:
+        ModelError: the model is no predictor of the ``expected_goal`` rater.
     """
     field = DIVISION_B
-    rater = ExpectedGoal(model=model, goalkeeper="fitted" if "fitted" in goalkeeper_kinds(model) else "")
+    try:
+        rater = ExpectedGoal(model=model, goalkeeper="fitted" if "fitted" in goalkeeper_kinds(model) else "")
+    except ValidationError as error:
+        raise ModelError(first_problem(error, ExpectedGoal)[1]) from error
     points = goal_candidates(field)
     x = np.arange(0.0, field.half_length, spacing)
     y = np.arange(-field.half_width, field.half_width + spacing / 2.0, spacing)

@@ -38,6 +38,8 @@ _HOMES = {
     "yellow": "trial",
 }
 
+__all__ = list(_HOMES)
+
 if TYPE_CHECKING:
     from robobt.testing.frames import frame as frame
     from robobt.testing.frames import held as held

@@ -5,6 +5,8 @@ Functions that return a predicate make one for one run: what it has seen before 
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
@@ -27,14 +29,31 @@ def goal_for(team: Team) -> Predicate:
     return scores
 
 
+@dataclass(frozen=True)
+class HasStatus:
+    """Whether a node of a tree that is played has a status; asked only once the tree has been ticked.
+
+    Attributes:
+        node: the node.
+        status: the status.
+    """
+
+    node: Behaviour
+    status: Status
+
+    def __call__(self, _frame: Frame) -> bool:
+        """Return whether the node has the status, whatever the frame."""
+        return self.node.status is self.status
+
+
 def succeeds(node: Behaviour) -> Predicate:
     """Return whether a ``node`` of a tree that is played has the status SUCCESS."""
-    return lambda _: node.status is Status.SUCCESS
+    return HasStatus(node, Status.SUCCESS)
 
 
 def fails(node: Behaviour) -> Predicate:
     """Return whether a ``node`` of a tree that is played has the status FAILURE."""
-    return lambda _: node.status is Status.FAILURE
+    return HasStatus(node, Status.FAILURE)
 
 
 def has_ball(robot: RobotId) -> Predicate:

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 from py_trees.behaviour import Behaviour
 
 from robobt.sim import SimSettings, SimWorld, preset
 from robobt.skills.store import Store, TeamStore
+from robobt.testing.predicates import HasStatus
 from robobt.testing.statements import Statement
 from robobt.tree import TreeRunner
 from robobt.world import (
@@ -95,7 +96,7 @@ class Trial:
             view = views[robot.team]
             self.stores[robot] = Store(view, _robot(view, robot), team=teams[robot.team])
             self._runners[robot] = TreeRunner(tree, self.stores[robot], on_error="raise")
-        self.frames: list[Frame] = [frame]
+        self.frames: list[Frame] = [self.world.truth()]
         self.kicks: list[tuple[float, RobotId]] = []
 
     def tick(self) -> Frame:
@@ -120,6 +121,9 @@ class Trial:
     def run(self, seconds: float, *statements: Statement) -> Frame:
         """Play until every *eventually* has held, and return the last frame.
 
+        What has to hold *always* is asked of the frame from which this begins too; of a node's status only
+        once the node has been ticked.
+
         Args:
             seconds: the longest that is played; without an *eventually* all of it is.
             statements: what has to hold.
@@ -131,12 +135,12 @@ class Trial:
         __tracebackhide__ = True
         waiting = [statement for statement in statements if statement.kind == "eventually"]
         watched = [statement for statement in statements if statement.kind == "always"]
+        unticked = len(self.frames) == 1
+        _check([it for it in watched if not (unticked and isinstance(it.holds, HasStatus))], self.frames[-1])
         end = self.world.time + seconds
         while self.world.time < end - 1e-9:
             frame = self.tick()
-            for statement in watched:
-                if not statement.holds(frame):
-                    raise AssertionError(f"at {frame.time:.3f} s not always: {statement.what}")
+            _check(watched, frame)
             waiting = [statement for statement in waiting if not statement.holds(frame)]
             if not waiting and len(watched) < len(statements):
                 return frame
@@ -144,6 +148,14 @@ class Trial:
             missed = "; ".join(statement.what for statement in waiting)
             raise AssertionError(f"in {seconds} s not once: {missed}")
         return self.frames[-1]
+
+
+def _check(watched: Sequence[Statement], frame: Frame) -> None:
+    """Raise if one of the statements does not hold at a frame."""
+    __tracebackhide__ = True
+    for statement in watched:
+        if not statement.holds(frame):
+            raise AssertionError(f"at {frame.time:.3f} s not always: {statement.what}")
 
 
 def alone(

@@ -204,6 +204,11 @@ def test_what_is_wrong_with_a_file_is_one_line(write: Write, source: str, name: 
     assert "bad.py" in said
 
 
+@pytest.mark.parametrize("model", ["duel_ppo", "models/duel_ppo.pt"])
+def test_a_model_is_no_play(model: str) -> None:
+    assert f"'{model}' is a model, not a play" in str(problem_with_play(model))
+
+
 def test_a_file_alone_is_told_its_plays(write: Write) -> None:
     play = state(write, "old", 1.0)
     file = play.rpartition(":")[0]

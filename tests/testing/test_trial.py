@@ -67,6 +67,22 @@ def test_what_does_not_always_hold_is_named_with_its_time() -> None:
         standing().run(1.0, never("late", lambda frame: not early(frame)))
 
 
+def test_what_does_not_hold_at_the_start_does_not_always_hold() -> None:
+    with pytest.raises(AssertionError, match=r"^at 0.000 s not always: started$"):
+        standing().run(1.0, always("started", lambda frame: frame.time > 0.0))
+    with pytest.raises(AssertionError, match=r"^at 0.000 s not always: not: at rest$"):
+        standing().run(1.0, never("at rest", lambda frame: frame.time == 0.0))
+
+
+def test_a_node_is_not_asked_for_its_status_before_it_was_ticked() -> None:
+    stop = Stop()
+    trial = alone(Sequence("all", memory=False, children=[stop]), (0.0, 1.0, 0.0), ball=(2.0, 0.0))
+    with pytest.raises(AssertionError, match=r"^at 0.017 s not always: it fails$"):
+        trial.run(0.1, always("it fails", fails(stop)))
+    with pytest.raises(AssertionError, match=r"^at 0.017 s not always: it fails$"):
+        trial.run(0.1, always("it fails", fails(stop)))
+
+
 def test_a_second_run_goes_on() -> None:
     trial = standing()
     trial.run(0.1)

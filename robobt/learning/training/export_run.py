@@ -115,7 +115,9 @@ def held_out(figures: Evaluation) -> dict[str, Measured]:
 
 
 def _mean(values: _Floats, unit: str) -> Measured:
+    """Compute the mean of values that are never negative, as the interval then is not either."""
     low, high = mean_interval(values) if len(values) > 1 else (None, None)
+    low = None if low is None else max(0.0, low)
     return Measured(
         value=float(values.mean()),
         low=low,
@@ -133,7 +135,7 @@ def _ratio(times: _Floats, optima: _Floats) -> Measured:
     high: float | None = None
     if len(times) > 1:
         off = mean_interval(times - ratio * optima)
-        low, high = ratio + off.low / float(optima.mean()), ratio + off.high / float(optima.mean())
+        low, high = max(0.0, ratio + off.low / float(optima.mean())), ratio + off.high / float(optima.mean())
     return Measured(value=ratio, low=low, high=high, n=len(times), interval="95 % Student, ratio of means")
 
 

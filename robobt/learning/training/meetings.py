@@ -20,7 +20,7 @@ from robobt.learning.envs.soccer.suite import Opponent, against, instead
 from robobt.learning.envs.soccer.task import SoccerTask
 from robobt.learning.envs.task import FloatArray
 from robobt.learning.opponents.play_settings import PlaySettings
-from robobt.learning.training.run_folder import ACTOR, PAST, load_actor, read_settings
+from robobt.learning.training.run_folder import ACTOR, PAST, SETTINGS, load_actor, read_settings
 from robobt.learning.training.setting_groups import Script
 
 _ENCOUNTER_ARENAS = 128
@@ -88,9 +88,13 @@ def contenders_of(folder: Path, past: int, name: str = "") -> tuple[SoccerSettin
     has ended.
 
     Raises:
-        RunFolderError: there is no run, or a policy is damaged.
-        MeetingError: it is no run of two teams that learn, or has no policies yet.
+        RunFolderError: the settings cannot be read, or a policy is damaged.
+        MeetingError: it is no run of two teams that learn, or has no policies yet; or no folder, but a model.
     """
+    if not (folder / SETTINGS).exists():
+        raise MeetingError(
+            f"{folder}: is no folder of a training run; models do not take part in a round robin"
+        )
     settings = read_settings(folder)
     environment = settings.environment
     if not isinstance(environment, SoccerSettings) or not environment.two_alike:

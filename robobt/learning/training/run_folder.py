@@ -125,6 +125,9 @@ class RunFolder:
             raise RunFolderError(f"{path}: holds other files; give a new folder")
         else:
             path.mkdir(parents=True, exist_ok=True)
+            # Of a run that was stopped before its first checkpoint.
+            for earlier in (path / PAST).glob("*.pt"):
+                earlier.unlink()
             write_atomically(path / SETTINGS, write_yaml(settings.model_dump(mode="json")))
 
     def __enter__(self) -> Self:
@@ -179,10 +182,8 @@ class RunFolder:
             path.unlink(missing_ok=True)
 
     def _has_begun(self) -> bool:
-        """Return whether there is anything to lose: results, a checkpoint or a log."""
-        log = self.path / LOG
-        written = any(path.exists() for path in (self.path / RESULT, *self._checkpoints()))
-        return written or (log.exists() and log.stat().st_size > 0)
+        """Return whether there is anything to go on from: results or a checkpoint."""
+        return any(path.exists() for path in (self.path / RESULT, *self._checkpoints()))
 
     def _checkpoints(self) -> tuple[Path, Path]:
         return self.path / CHECKPOINT, checkpoint.previous(self.path / CHECKPOINT)

@@ -73,8 +73,10 @@ def _with_field(scenario: Scenario, name: str, value: object) -> Scenario:
     fields = [field for field in Scenario.model_fields if field != "robots"]
     if key not in fields:
         robots = [str(robot) for robot, _ in scenario.robots]
-        problem = f"there is no such field; {unknown_name(key, [*fields, *robots])}"
-        raise scenario.error(problem, name)
+        groups = {field: type(getattr(scenario, field)) for field in fields}
+        inside = [f"{field}.{name}" for field, of in groups.items() if key in getattr(of, "model_fields", ())]
+        meant = f"did you mean {' or '.join(inside)}?" if inside else unknown_name(key, [*fields, *robots])
+        raise scenario.error(f"there is no such field; {meant}", name)
     data = {field: getattr(scenario, field) for field in scenario.model_fields_set}
     data[key] = _frozen(nested(data.get(key), inner, value) if inner else value)
     try:

@@ -121,6 +121,8 @@ def test_held_out_figures_carry_their_intervals() -> None:
         assert one.low is not None
         assert one.high is not None
         assert one.low < one.value < one.high
+    few = held_out(Evaluation(success[:2], np.array([0.1, 1.9]), np.array([0.1, 1.0]), np.zeros(2)))
+    assert few["time"].low == few["time_ratio"].low == 0.0
     nothing = held_out(Evaluation(~success & success, times * np.nan, times * np.nan, np.zeros(4)))
     assert list(nothing) == ["success"]
 

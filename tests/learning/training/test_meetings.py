@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
+import pytest
 import torch
 
 from robobt.learning.agents.networks import Actor
 from robobt.learning.envs.soccer.suite import SUITE
 from robobt.learning.envs.soccer.task import SoccerTask
-from robobt.learning.training.meetings import Contender, encounters, script
+from robobt.learning.training.meetings import Contender, MeetingError, contenders_of, encounters, script
 
 
 def test_everybody_meets_everybody_from_either_side() -> None:
@@ -30,3 +33,9 @@ def test_everybody_meets_everybody_from_either_side() -> None:
     assert found[1].won > found[1].lost + 10
     assert found[2].drawn == 80
     assert found == encounters(settings, contenders, 40, seed=3)
+
+
+@pytest.mark.parametrize("model", ["duel_ppo", "models/duel_ppo.pt"])
+def test_a_model_does_not_take_part(model: str) -> None:
+    with pytest.raises(MeetingError, match="no folder of a training run; models do not take part"):
+        contenders_of(Path(model), 5)

@@ -225,6 +225,18 @@ def test_a_run_that_failed_before_its_first_evaluation_is_simply_started_again(t
     assert load_run(tmp_path).settings == result.settings
 
 
+def test_a_run_that_was_stopped_before_its_first_checkpoint_is_simply_started_again(tmp_path):
+    with pytest.raises(KilledError):
+        train(slide_settings(), tmp_path, problem=breaking_after(10))
+    (tmp_path / "log.jsonl").write_text("{}\n")
+    earlier = tmp_path / "past" / "0000000007.pt"
+    earlier.parent.mkdir()
+    earlier.touch()
+    result = train(slide_settings(steps=480), tmp_path, problem=SLIDE)
+    assert len(load_run(tmp_path).validations) == len(result.validations)
+    assert not earlier.exists()
+
+
 def test_a_run_with_a_checkpoint_is_resumable_even_before_its_first_evaluation(tmp_path):
     settings = slide_settings(evaluation__every=1920)
     with pytest.raises(KilledError):

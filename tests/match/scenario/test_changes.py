@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from robobt.match import load_scenario
+import pytest
+
+from robobt.match import ScenarioError, load_scenario
 from robobt.match.scenario.changes import changed, with_team
 from robobt.world.game import Team
 
@@ -37,3 +39,10 @@ def test_a_team_plays_something_else_but_for_its_goalkeeper() -> None:
     assert other.robots.blue == scenario.robots.blue
     alone = with_team(load_scenario("striker_vs_goalkeeper"), Team.YELLOW, None, {"speed_factor": 0.5})
     assert alone.robots.yellow[0].params["speed_factor"] == 0.5
+
+
+def test_a_field_of_a_group_is_told_with_its_group() -> None:
+    with pytest.raises(
+        ScenarioError, match=r"time_limit: there is no such field; did you mean ends.time_limit\?$"
+    ):
+        changed(load_scenario("striker_vs_goalkeeper"), {"time_limit": 5})

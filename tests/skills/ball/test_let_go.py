@@ -31,7 +31,7 @@ def carried(let_go: Behaviour) -> float:
     ways = [0.0]
 
     def followed(seen: Frame) -> bool:
-        if len(ways) < 2 or ways[-1] > 0.0:
+        if seen.time > 0.0 and (len(ways) < 2 or ways[-1] > 0.0):
             kept = keeps_ball(seen.own[0], seen.ball)
             ways.append(hypot(seen.ball.x - HELD, seen.ball.y) if kept else 0.0)
         return True
