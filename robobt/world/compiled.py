@@ -19,11 +19,10 @@ from numba.extending import register_jitable
 from numpy.typing import NDArray
 from pydantic import BaseModel
 
-from robobt.world.compiled_key import DeepCache
+from robobt.world.compiled_key import COMPILING, DeepCache
 
 _log = logging.getLogger(__name__)
 
-_COMPILING = "numba:compile"
 _COMPILING_VARIABLE = "ROBOBT_COMPILING_TOLD"
 """Set in the environment, which workers inherit."""
 
@@ -69,7 +68,7 @@ def _compiled(function: Function, **options: Any) -> Function:
 def timing_compilation() -> Iterator[Callable[[], float]]:
     """Yield a function that returns numba's compilation time since then [s], without loading from cache."""
     listener = TimingListener()  # type: ignore[no-untyped-call]
-    with install_listener(_COMPILING, listener):
+    with install_listener(COMPILING, listener):
         yield lambda: float(listener.duration) if listener.done else 0.0
 
 
@@ -99,7 +98,7 @@ class CompilingTold(TimingListener):
 
 TOLD = CompilingTold()
 # Code that was kept and is only loaded does not count as compiled.
-register(_COMPILING, TOLD)  # type: ignore[no-untyped-call]
+register(COMPILING, TOLD)  # type: ignore[no-untyped-call]
 
 
 def compilable(function: Function) -> Function:

@@ -14,8 +14,30 @@ from types import CodeType, FunctionType
 import numpy as np
 from numba.core.caching import FunctionCache, IndexDataCacheFile
 from numba.core.dispatcher import Dispatcher
+from numba.core.event import Event, Listener, register, trigger_event
+
+from robobt.world.compiled_lock import CompilingTurn
+
+COMPILING = "numba:compile"
+"""Numba's name for the event that a function is compiled."""
 
 _CONSTANTS = (bool, int, float, str, tuple, frozenset, np.generic, np.dtype)
+
+
+class _Failed(Listener):
+    """Ends the turn of a function that cannot be compiled, and so is not kept."""
+
+    def on_start(self, event: Event) -> None:
+        """Do nothing."""
+
+    def on_end(self, event: Event) -> None:
+        """End the turn if the compilation raised."""
+        if event._exc_details is not None and event.data is not None:
+            COMPILING_TURN.end(event.data["dispatcher"].py_func)
+
+
+COMPILING_TURN = CompilingTurn()
+register(COMPILING, _Failed())  # type: ignore[no-untyped-call]
 
 
 class _Index(IndexDataCacheFile):
@@ -36,6 +58,39 @@ class DeepCache(FunctionCache):
         super().__init__(function)  # type: ignore[no-untyped-call]
         base, stamp = self._impl.filename_base, self._impl.locator.get_source_stamp()
         self._cache_file = _Index(self._cache_path, base, stamp)  # type: ignore[no-untyped-call]
+
+    def load_overload(self, sig: object, target_context: object) -> object:
+        """Return the code kept for these types; None if this process has to compile it.
+
+        If another process is compiling, this one waits for it.
+
+        Args:
+            sig: the types.
+            target_context: numba's, of the machine.
+        """
+        found = super().load_overload(sig, target_context)  # type: ignore[no-untyped-call]
+        if found is not None:
+            return found
+        # Waiting for another process takes the time of compiling.
+        with trigger_event(COMPILING):
+            begun = COMPILING_TURN.begin(self._py_func, self._cache_path)
+        if begun:
+            found = super().load_overload(sig, target_context)  # type: ignore[no-untyped-call]
+            if found is not None:
+                COMPILING_TURN.end(self._py_func)
+        return found
+
+    def save_overload(self, sig: object, data: object) -> None:
+        """Keep compiled code, and let other processes go on.
+
+        Args:
+            sig: the types that it is for.
+            data: the code.
+        """
+        try:
+            super().save_overload(sig, data)  # type: ignore[no-untyped-call]
+        finally:
+            COMPILING_TURN.end(self._py_func)
 
     def _index_key(self, sig: object, codegen: object) -> tuple[object, ...]:
         own: tuple[object, ...] = super()._index_key(sig, codegen)  # type: ignore[no-untyped-call]

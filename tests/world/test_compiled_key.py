@@ -137,3 +137,59 @@ def test_a_key_follows_defaults(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_a_key_follows_sets() -> None:
     one, other = (eval(f"lambda x: x in {{{values}}}") for values in ("1, 2", "1, 3"))
     assert key_of(one) != key_of(other)
+
+
+SLOW = """
+import os, sys, time
+from numba.core.event import Listener, register
+from robobt.world.compiled import compiled
+@compiled
+def inner(x):
+    return 2.0 * x
+@compiled
+def outer(x):
+    return inner(x) + 1.0
+class Sleep(Listener):
+    def on_start(self, event):
+        time.sleep(0.5)
+    def on_end(self, event):
+        pass
+register("numba:compile", Sleep())
+if __name__ == "__main__":
+    open(f"ready-{sys.argv[1]}", "w").close()
+    while not os.path.exists(f"ready-{1 - int(sys.argv[1])}"):
+        time.sleep(0.01)
+    print(outer(10.0), sum(outer.stats.cache_misses.values()) + sum(inner.stats.cache_misses.values()))
+"""
+
+
+def test_of_two_processes_one_compiles_and_the_other_loads_it(tmp_path: Path) -> None:
+    (tmp_path / "outer.py").write_text(SLOW)
+    runs = [
+        subprocess.Popen(
+            [sys.executable, "-B", "outer.py", str(number)], cwd=tmp_path, stdout=subprocess.PIPE, text=True
+        )
+        for number in range(2)
+    ]
+    said = [run.communicate(timeout=LIMIT)[0].split() for run in runs]
+    assert sorted(said) == [["21.0", "0"], ["21.0", "2"]]
+
+
+FAILS = """
+from contextlib import suppress
+from robobt.world.compiled import compiled
+from robobt.world.compiled_key import COMPILING_TURN
+@compiled
+def fails(x):
+    return x.nothing
+with suppress(Exception):
+    fails(1.0)
+print(COMPILING_TURN.of)
+"""
+
+
+def test_what_cannot_be_compiled_keeps_nobody_waiting(tmp_path: Path) -> None:
+    (tmp_path / "fails.py").write_text(FAILS)
+    run = [sys.executable, "-B", "fails.py"]
+    done = subprocess.run(run, cwd=tmp_path, capture_output=True, text=True, check=True, timeout=LIMIT)
+    assert done.stdout == "None\n"
