@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from typing import ClassVar, get_args
 
@@ -13,9 +14,11 @@ from robobt.config.errors import FieldError, message_of, one_line, short_repr, u
 _PLAIN_WORDS = {
     "valid array": "list",
     "valid tuple": "list",
+    "valid list": "list",
     "Tuple": "list",
     " after validation": "",
     "an object": "a mapping",
+    r"a valid dictionary( or instance of \w+)?": "a mapping",
 }
 """pydantic's terms, and the terms for people who write files."""
 
@@ -52,9 +55,7 @@ def first_problem(error: ValidationError, model: type[BaseModel], data: object =
     problem = _most_telling(problems)
     place = [str(part) for part in problem["loc"]] if data is None else _path_in(problem["loc"], data)
     cause = problem.get("ctx", {}).get("error")
-    message = problem["msg"]
-    for theirs, ours in _PLAIN_WORDS.items():
-        message = message.replace(theirs, ours)
+    message = plain_words(problem["msg"])
     if isinstance(cause, Exception):
         message = message_of(cause)
         if isinstance(cause, FieldError):
@@ -67,6 +68,13 @@ def first_problem(error: ValidationError, model: type[BaseModel], data: object =
         message = f"{message}, not {short_repr(problem['input'])}"
     more = f" (and {len(problems) - 1} more)" if len(problems) > 1 else ""
     return one_line(".".join(place), 200), message[:1].lower() + message[1:] + more
+
+
+def plain_words(message: str) -> str:
+    """Return a ``message`` of pydantic's in words for people who write files, to be put behind a field."""
+    for theirs, ours in _PLAIN_WORDS.items():
+        message = re.sub(theirs, ours, message)
+    return message[:1].lower() + message[1:]
 
 
 def _most_telling(problems: list[ErrorDetails]) -> ErrorDetails:

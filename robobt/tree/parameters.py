@@ -17,7 +17,7 @@ from pydantic.errors import PydanticUserError
 from pydantic_core import PydanticSerializationError
 
 from robobt.config.errors import FieldError, RobobtError, message_of, short_repr, unknown_name
-from robobt.config.validation import first_problem, nested
+from robobt.config.validation import first_problem, nested, plain_words
 from robobt.tree.by_name import ByName
 from robobt.tree.signatures import signature_of
 
@@ -89,7 +89,7 @@ class Parameter:
             cause = problem.get("ctx", {}).get("error")
             if isinstance(cause, FieldError):
                 raise ParameterError(f"{place}.{cause.field}", message_of(cause)) from error
-            said = message_of(cause) if isinstance(cause, ValueError) else problem["msg"]
+            said = message_of(cause) if isinstance(cause, ValueError) else plain_words(problem["msg"])
             raise ParameterError(place, f"{said}, not {short_repr(problem['input'])}") from error
         except Exception as error:
             # Validators run foreign code, and an abstract model cannot be made at all.

@@ -65,7 +65,7 @@ class Team(BaseModel):
             "robots.0.nummer",
             "there are number (and 1 more)",
         ),
-        ({"robots": 3}, "robots", "should be a valid list, not 3"),
+        ({"robots": 3}, "robots", "should be a list, not 3"),
     ],
 )
 def test_the_first_problem_names_the_field(data: object, field: str, message: str) -> None:

@@ -221,6 +221,7 @@ def test_a_program_that_is_not_there_has_lost(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("content", "problem"),
     [
+        ("program: 60\n", "program: input should be a mapping, not 60"),
         ("program: {}\n", "program.command: is missing"),
         ("program: {command: []}\n", "program.command: list should have at least 1 item, not 0"),
         ("program: {command: ./start.sh}\n", "program.command: input should be a list, not './start.sh'"),

@@ -264,7 +264,7 @@ def test_without_end_cannot_be_a_sub_trees_port() -> None:
         '<BehaviorTree ID="Again"><RetryUntilSuccessful num_attempts="{times}"><AlwaysFailure/>'
         "</RetryUntilSuccessful></BehaviorTree>"
     )
-    with pytest.raises(TreeFileError, match="num_failures: Should be 1 or more; FailureIsRunning tries with"):
+    with pytest.raises(TreeFileError, match="num_failures: should be 1 or more; FailureIsRunning tries with"):
         tree(body, again)
 
 

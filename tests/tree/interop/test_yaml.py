@@ -259,11 +259,11 @@ def test_a_text_that_begins_with_a_dollar_is_written_with_two() -> None:
         ("play: p\ntree: Sotp", "test.yaml:2: no node is called 'Sotp'; is it Stop"),
         (
             "play: p\ntree: {Retry: {name: r, num_failures: -1, child: Stop}}",
-            "Retry: num_failures: Should be 1 or more; FailureIsRunning tries without end, not -1",
+            "Retry: num_failures: should be 1 or more; FailureIsRunning tries without end, not -1",
         ),
         (
             "play: p\ntree: {Repeat: {name: r, num_success: 0, child: Stop}}",
-            "Repeat: num_success: Should be 1 or more, or -1 for without end, not 0",
+            "Repeat: num_success: should be 1 or more, or -1 for without end, not 0",
         ),
         ("play: p\ntree: qqqq", "there are Aim"),
         ("play: p\ntree: 3", "a node is a name"),
@@ -280,7 +280,7 @@ def test_a_text_that_begins_with_a_dollar_is_written_with_two() -> None:
         ),
         (
             "play: p\ntree:\n  Wall:\n    place: two",
-            "test.yaml:4: Wall: place: Input should be a valid integer",
+            "test.yaml:4: Wall: place: input should be a valid integer",
         ),
         ("play: p\ntree: {Wall: {place: 1.5}}", "Wall: place: .*valid integer"),
         ('play: p\ntree: {Wall: {place: "1"}}', "Wall: place: .*valid integer"),
@@ -289,6 +289,10 @@ def test_a_text_that_begins_with_a_dollar_is_written_with_two() -> None:
         ("play: p\ntree: {GoToPose: {heading: .nan}}", "GoToPose: heading"),
         ("play: p\ntree: {GoToPose: {heading: .inf}}", "GoToPose: heading"),
         ("play: p\ntree: {GoToPose: {target: [1]}}", "GoToPose: target"),
+        (
+            "play: p\ntree: {GoToPose: {target: 60}}",
+            "test.yaml:2: GoToPose: target: input should be a list, not 60",
+        ),
         ("play: p\ntree: {GoToPose: {limits: {top_speed: 1}}}", "limits.top_speed"),
         ("play: p\ntree: {GoToPose: {limits: {max_speed: -1}}}", "limits.max_speed"),
         ("play: p\ntree: {IsRestart: {kind: corner}}", "IsRestart: kind"),
@@ -338,7 +342,7 @@ def test_a_text_that_begins_with_a_dollar_is_written_with_two() -> None:
         ("play: p\nparams: {a: {}}\ntree: Stop", "it needs a type or a default"),
         ("play: p\nparams: {a: {type: float, sort: 1}}\ntree: Stop", "the parameter 'a' has no 'sort'"),
         ("play: p\nparams: {a: {type: double}}\ntree: Stop", "'double' is not a type of a parameter"),
-        ("play: p\nparams: {a: {type: int, default: x}}\ntree: Stop", "a: Input should be a valid integer"),
+        ("play: p\nparams: {a: {type: int, default: x}}\ntree: Stop", "a: input should be a valid integer"),
         ("play: p\nparams: {a: $b}\ntree: Stop", "a default depends on no other parameter"),
         ("play: p\nparams: {a-b: 1}\ntree: Stop", "'a-b' is not a name of a parameter"),
         ("play: p\nlet: {b: 1}\ntree: Stop", "a tree file has no 'let'"),
