@@ -19,7 +19,7 @@ from robobt.match.results.results import MatchResult
 from robobt.match.runner import Run, run_trials_in
 from robobt.match.scenario.scenario import Scenario, load_scenario
 from robobt.sim import SimSettings, SimWorld, settings_from
-from robobt.world.prediction import PredictedWorld
+from robobt.world.prediction import predicted
 from robobt.world.protocol import World
 
 
@@ -36,16 +36,10 @@ def sim_world(scenario: Scenario) -> World:
     limits = {robot: setup.limits_over(settings.limits) for robot, setup in scenario.robots}
     world = SimWorld(scenario.field, limits, settings, scenario.period)
     realism = settings.realism
-    late = (
-        realism.vision_delay
-        + realism.command_delay
-        + max(((own or settings.limits).dead_time for own in limits.values()), default=0.0)
-    )
-    if not scenario.predict or late == 0.0:
+    if not scenario.predict:
         return world
-    return PredictedWorld(
-        world, realism.vision_delay, realism.command_delay, gaps=realism.missing_robot > 0.0
-    )
+    gaps = realism.missing_robot > 0.0
+    return predicted(world, limits.values(), realism.vision_delay, realism.command_delay, gaps)
 
 
 def scenario_settings(scenario: Scenario, preset: str | None = None) -> SimSettings:

@@ -5,8 +5,10 @@ from __future__ import annotations
 from functools import lru_cache
 from math import cos, sin
 
+from robobt.motion.catch import MOUTH
 from robobt.motion.pilot import command, turn_rate
 from robobt.world.command import RobotCommand
+from robobt.world.geometry import Point
 from robobt.world.limits import RobotLimits
 from robobt.world.state import BallState, RobotState
 
@@ -52,12 +54,23 @@ def turn_with_ball(me: RobotState, heading: float, limits: RobotLimits, period: 
     return turn
 
 
-def sideways_after_kick(me: RobotState, ball: BallState) -> float:
-    """Return the velocity across the heading, to the left, that the ball would have after a kick [m/s].
+def velocity_for_kick(me: RobotState, vx: float, vy: float) -> Point:
+    """Return the velocity whose part across the heading the ball has after a kick on its first touch [m/s].
 
-    Of its velocity along the robot's front it keeps the share ``limits.touch_kept``.
+    Of its motion along the robot's front the ball keeps the share ``limits.touch_kept``; for the rest it goes
+    on with the front. One that is carried has no such motion.
+
+    Args:
+        me: the robot as it kicks.
+        vx: the ball's velocity along x before the kick [m/s].
+        vy: its velocity along y [m/s].
     """
-    c, s = cos(me.heading), sin(me.heading)
-    sideways = c * ball.vy - s * ball.vx
-    front = c * me.vy - s * me.vx + me.omega * (c * (ball.x - me.x) + s * (ball.y - me.y))
-    return sideways - (1.0 - me.limits.touch_kept) * (sideways - front)
+    kept, turning = me.limits.touch_kept, me.omega * MOUTH
+    front_x, front_y = me.vx - turning * sin(me.heading), me.vy + turning * cos(me.heading)
+    return kept * vx + (1.0 - kept) * front_x, kept * vy + (1.0 - kept) * front_y
+
+
+def sideways_after_kick(me: RobotState, ball: BallState) -> float:
+    """Return the velocity across the heading, to the left, that the ball would have after a kick [m/s]."""
+    vx, vy = velocity_for_kick(me, ball.vx, ball.vy)
+    return cos(me.heading) * vy - sin(me.heading) * vx

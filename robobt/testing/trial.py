@@ -22,6 +22,8 @@ from robobt.world import (
     RobotState,
     Team,
 )
+from robobt.world.answer import compensated
+from robobt.world.prediction import predicted
 
 Pose = tuple[float, float, float]
 """Place and heading of a robot (x, y, heading) [m, rad]."""
@@ -39,6 +41,9 @@ def yellow(number: int) -> RobotId:
 
 class Trial:
     """Trees on robots in the simulator; all places are as blue sees the field.
+
+    As in a match, trees see frames that are predicted over delays, and robots with known gains are commanded
+    what they need to do as told.
 
     ::
 
@@ -85,9 +90,13 @@ class Trial:
         if isinstance(settings, str):
             settings = preset(settings)
         self.world = SimWorld(field, dict.fromkeys(poses, limits), settings, period)
+        realism = settings.realism
+        self._seen = predicted(
+            self.world, (limits or settings.limits,), realism.vision_delay, realism.command_delay
+        )
         still = (0.0, 0.0) if len(ball) == 2 else ()
-        self.world.reset(Placement(dict(poses), (*ball, *still)), seed)
-        frame = self.world.observe()
+        self._seen.reset(Placement(dict(poses), (*ball, *still)), seed)
+        frame = self._seen.observe()
         teams = {team: TeamStore() for team in Team}
         views = {team: frame.seen_by(team) for team in Team}
         self.stores: dict[RobotId, Store] = {}
@@ -105,7 +114,7 @@ class Trial:
         Raises:
             TreeError: a node raised.
         """
-        frame = self.world.observe()
+        frame = self._seen.observe()
         views = {team: frame.seen_by(team) for team in Team}
         commands: dict[RobotId, RobotCommand] = {}
         for robot, runner in self._runners.items():
@@ -113,7 +122,7 @@ class Trial:
             store.frame, store.me, store.command = view, _robot(view, robot), RobotCommand()
             runner.tick()
             commands[robot] = store.command
-        self.world.act(commands)
+        self._seen.act(compensated(commands, frame))
         self.kicks += [(frame.time, robot) for robot in self.world.kicks]
         self.frames.append(self.world.truth())
         return self.frames[-1]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from math import ceil, cos, exp, hypot, sin, sqrt
 from statistics import fmean
@@ -13,6 +13,7 @@ from robobt.world.answer import FollowedCommand
 from robobt.world.ball_model import GRAVITY
 from robobt.world.command import RobotCommand
 from robobt.world.geometry import wrap_angle
+from robobt.world.limits import RobotLimits
 from robobt.world.protocol import Placement, World, WrappedWorld
 from robobt.world.state import (
     BALL_RADIUS,
@@ -51,6 +52,27 @@ class _LastSeen(NamedTuple):
 
     robot: RobotState
     since: float
+
+
+def predicted(
+    world: World,
+    limits: Iterable[RobotLimits],
+    vision_delay: float = 0.0,
+    command_delay: float = 0.0,
+    gaps: bool = False,
+) -> World:
+    """Return the world with its frames predicted, or the world itself if nothing in it is late.
+
+    Args:
+        world: the world that is seen late, or whose robots obey late.
+        limits: of its robots, which have their dead times.
+        vision_delay: age of what it observes [s].
+        command_delay: from a command to its effect, beside the robots' own dead time [s].
+        gaps: as for :class:`PredictedWorld`.
+    """
+    if vision_delay + command_delay + max((own.dead_time for own in limits), default=0.0) == 0.0:
+        return world
+    return PredictedWorld(world, vision_delay, command_delay, gaps)
 
 
 class PredictedWorld(WrappedWorld):

@@ -197,7 +197,8 @@ class KickToTarget(DrivingSkill):
         near = distance(me.position, ball.position) < _NEAR_BALL_DISTANCE
         x, y = ball.position if near else meeting_point(frame, me, limits)
         line = direction((x, y), order.target)
-        facing = line - atan2(ball.vy * cos(line) - ball.vx * sin(line), order.along)
+        across = me.limits.touch_kept * (ball.vy * cos(line) - ball.vx * sin(line))
+        facing = line - atan2(across, order.along)
         ux, uy = cos(facing), sin(facing)
         # The robot's distance behind the ball and beside the line of the kick.
         back = (x - me.x) * ux + (y - me.y) * uy

@@ -168,18 +168,17 @@ def aim_of(
     incoming_y: float,
     shot_speed: float,
     fastest: float,
-    touch_kept: float,
 ) -> float:
     """Return the heading [rad] from which a ball kicked at once leaves along (heading_x, heading_y).
 
-    A kick sends the ball along the heading at the speed of :func:`redirect_kick` and keeps the share
-    ``touch_kept`` of its sideways speed, for which the heading compensates, of a ball that comes in with
-    (incoming_x, incoming_y) [m/s].
+    A kick sends the ball along the heading at the speed of :func:`redirect_kick`. The heading compensates for
+    the part across it of (incoming_x, incoming_y) [m/s], which the ball keeps
+    (:func:`~robobt.motion.dribbling.velocity_for_kick`).
     """
     wanted = atan2(heading_y, heading_x)
     heading = wanted
     for _ in range(20):
-        sideways = touch_kept * (cos(heading) * incoming_y - sin(heading) * incoming_x)
+        sideways = cos(heading) * incoming_y - sin(heading) * incoming_x
         heading = wanted - atan2(sideways, redirect_kick(sideways, shot_speed, fastest))
     return heading
 

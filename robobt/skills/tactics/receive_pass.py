@@ -7,6 +7,7 @@ from math import cos, hypot, sin
 
 from robobt.motion.arrival import arrival_time
 from robobt.motion.catch import MOUTH, catch
+from robobt.motion.dribbling import velocity_for_kick
 from robobt.motion.path_planner import travel
 from robobt.skills.ball.intercept import earliest_meeting, meet
 from robobt.skills.base import Skill, skill
@@ -116,10 +117,9 @@ class ReceivePass(Skill):
         if gap < tactics.armed and abs(wrap_angle(heading - me.heading)) < 0.12:
             v = max(0.0, speed - frame.ball_model.roll_deceleration * min(time, 0.3))
             c, s = cos(me.heading), sin(me.heading)
+            incoming_x, incoming_y = velocity_for_kick(me, ux * v, uy * v)
             order.kick_speed = (
-                redirect_kick(
-                    me.limits.touch_kept * (c * uy - s * ux) * v, tactics.shot_speed, tactics.fastest
-                )
+                redirect_kick(c * incoming_y - s * incoming_x, tactics.shot_speed, tactics.fastest)
                 + me.limits.kick_rebound * (c * ux + s * uy) * v
             )
             order.kick_trigger = KickTrigger.ON_CONTACT
@@ -171,12 +171,5 @@ class ReceivePass(Skill):
         store.shot = Shot((field.half_length, goal_y), max(0.01, half_angle), chance)
         v = max(0.3, speed - 0.5 * time)
         to_goal = field.half_length - x
-        return aim_of(
-            to_goal,
-            goal_y - y,
-            ux * v,
-            uy * v,
-            tactics.shot_speed,
-            tactics.fastest,
-            self.me.limits.touch_kept,
-        )
+        incoming = velocity_for_kick(self.me, ux * v, uy * v)
+        return aim_of(to_goal, goal_y - y, *incoming, tactics.shot_speed, tactics.fastest)
