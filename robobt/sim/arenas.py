@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from math import ceil
 from typing import Literal, get_args
 
@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike
 
 from robobt.sim.arrays import arena_arrays
 from robobt.sim.bodies import SLOP, fill, moment_of_inertia, until_placed, walls_of
+from robobt.sim.chance import seeded
 from robobt.sim.chipmunk import NO_CALLS, ROW, BodyBuffer
 from robobt.sim.contacts.solver import contact_arrays
 from robobt.sim.kernels import control_tick
@@ -116,6 +117,7 @@ class Arenas:
         self._arena_index, self._robot_index = np.ogrid[:n, :count]
         self._delays = np.array([delay + (own or settings.limits).dead_time for own in limits])
         self.delay_commands(np.arange(n), 0.0)
+        self.seed(range(n))
         self.late = bool(self._periods.any())
 
     @property
@@ -161,6 +163,14 @@ class Arenas:
             self._newest = longest - 1
         self._forget_commands(arenas)
 
+    def seed(self, seeds: Iterable[int]) -> None:
+        """Seed the random numbers by which the speeds of kicks vary.
+
+        Args:
+            seeds: of each arena, at least 0.
+        """
+        self._states["chance"] = seeded(seeds)
+
     def _forget_commands(self, arenas: IntArray) -> None:
         self._old[arenas] = self._new[arenas] = 0.0
         self._waiting[:, arenas] = 0.0
@@ -186,9 +196,10 @@ class Arenas:
         rows[which, count, 3:5] = ball[:, 2:]
         self._set_ball(which, ball[:, 2], ball[:, 3], self.settings.ball.placed_rolls)
         self.flight[which] = 0.0
-        self._arrays.kept.view(KEPT)["cooldown"][which] = 0.0
+        kept = self._arrays.kept.view(KEPT)
+        kept["cooldown"][which] = kept["charging"][which] = 0.0
         for axis in ("vx", "vy", "omega"):
-            self._arrays.kept.view(KEPT)["followed"][axis][which] = 0.0
+            kept["followed"][axis][which] = 0.0
         self._arrays.drives[which] = 0.0
         self.touch[which] = -1
         self.kicked[which] = False
@@ -241,7 +252,8 @@ class Arenas:
         """
         self._read()
         self._arrays.bodies[arena, robot] = state
-        self._arrays.kept.view(KEPT)["cooldown"][arena, robot] = 0.0
+        kept = self._arrays.kept.view(KEPT)
+        kept["cooldown"][arena, robot] = kept["charging"][arena, robot] = 0.0
         self._arrays.drives[arena, robot] = 0.0
         self._arrays.contacts.forget(arena)
         self._write()

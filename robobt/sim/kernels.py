@@ -11,6 +11,7 @@ from __future__ import annotations
 from math import cos, hypot, sin
 
 from robobt.sim.arrays import ArenaArrays
+from robobt.sim.chance import drawn_factor
 from robobt.sim.chipmunk import (
     FUNCTIONS,
     HANDLE,
@@ -109,6 +110,7 @@ def control_tick(arrays_: ArenaArrays, old_: FloatArray, new_: FloatArray, sub_s
             touch=touch[a],
             parameters=state.parameters,
             wheels=state.wheels,
+            state=state,
             kept=kept[a],
             drives=drives[a],
             kicked=arrays.kicked[a],
@@ -154,6 +156,8 @@ def _act(arena: Arena, old: Records[Command], new: Records[Command], step: int, 
             begins = drive_wheels(robot, kept.followed, kept.limits, arena.wheels, arena.drives[i], dt)
         else:
             drive(robot, kept.followed, kept.limits, dt)
+        if kept.charging > 0.0:
+            kept.charging -= dt
         if kept.cooldown > 0.0:
             kept.cooldown -= dt
         elif not (low and _kicks(arena, i, command, dt)):
@@ -167,17 +171,19 @@ def _act(arena: Arena, old: Records[Command], new: Records[Command], step: int, 
 def _kicks(arena: Arena, i: int, command: Command, dt: float) -> bool:
     """Let a robot kick a low ball if it is commanded to and has it; return whether it did."""
     ball, robot, p = arena.ball, arena.robots[i], arena.parameters
-    if command.kick_speed <= 0.0:
+    if command.kick_speed <= 0.0 or arena.kept[i].charging > 0.0:
         return False
     if command.on_contact > 0.0 and p.glue == 0.0 and p.roller == 0.0:
         let_in(arena.body, ball, robot, p, dt)
     if not in_mouth(arena.body, robot, p, p.body.sensor_depth):
         return False
-    limits = arena.kept[i].limits
-    kick(arena.body, ball, arena.air, robot, limits, command.kick_speed, command.kick_angle, p)
+    kept, speed = arena.kept[i], command.kick_speed
+    if p.kicker.speed_spread > 0.0:
+        speed *= drawn_factor(arena.state, p.kicker.speed_spread)
+    kick(arena.body, ball, arena.air, robot, kept.limits, speed, command.kick_angle, p)
     command.kick_speed = 0.0
     arena.kicked[i] = True
-    arena.kept[i].cooldown = p.kicker.recharge
+    kept.cooldown, kept.charging = p.kicker.recharge, p.kicker.charge
     arena.drives[i].hinge.held = 0.0
     ball.kicker, ball.carrier = i, -1
     arena.touch.robot = i

@@ -137,12 +137,13 @@ class Followed:
 class Kept:
     """What is kept of a robot beside its body.
 
-    Its limits, the time until its kicker is ready [s], the sub-step of a period from which a command is in
-    force, and the velocity that it follows.
+    Its limits, the time until dribbler and kicker are ready and until the kicker is charged [s], the sub-step
+    of a period from which a command is in force, and the velocity that it follows.
     """
 
     limits: Limits
     cooldown: float
+    charging: float
     switch: Index
     followed: Followed
 
@@ -223,8 +224,9 @@ class Parameters:
 
 
 class ArenaState:
-    """What is kept of an arena."""
+    """What is kept of an arena; ``chance`` is the state of its random numbers."""
 
+    chance: Index
     ball: SimulatedBall
     parameters: Parameters
     wheels: Wheels
@@ -404,6 +406,7 @@ class Arena(NamedTuple):
     touch: Touch
     parameters: Parameters
     wheels: Wheels
+    state: ArenaState
     kept: Records[Kept]  # (R,)
     drives: Records[WheelDrive]  # (R,)
     kicked: BoolArray  # (R,) who kicked in this period

@@ -114,8 +114,7 @@ class DribblerSettings(Settings):
 class KickerSettings(Settings):
     """The kicker. What a kick keeps of the ball's sideways velocity, the robot's limits say.
 
-    ``speed_spread`` is drawn for each kick from the world's own generator; arenas for training draw theirs
-    by randomisation.
+    The speed of each kick is drawn from random numbers of the field's own, which follow from its seed.
     """
 
     max_speed: float = Field(6.5, gt=0, le=20, description="fastest ball after a kick [m/s]")
@@ -126,6 +125,7 @@ class KickerSettings(Settings):
         0.0, ge=0, le=0.3, description="standard deviation of kicks' speeds, as a share of the commanded"
     )
     recharge: float = Field(0.1, ge=0, le=10, description="no kick and no dribbling after a kick [s]")
+    charge: float = Field(0.0, ge=0, le=30, description="time after a kick until the next can be fired [s]")
     chip_angle: float | None = Field(
         45.0, gt=0, lt=90, description="of every chip, from the ground [deg]; none for the one commanded"
     )

@@ -86,6 +86,7 @@ class SimWorld(World):
         ).reshape(-1, 6)
         # A new space: the old one remembers the contacts of its last steps and would act on them.
         self._arenas = self._make_arenas()
+        self._arenas.seed((seed,))
         self._arenas.place(poses[None], np.array([placement.ball]))
         self._commands[:] = 0.0
         self._rng = np.random.default_rng(seed)
@@ -143,7 +144,6 @@ class SimWorld(World):
             if not command.finite():
                 raise ValueError(f"the command for {robot} is not finite: {command}")
             sent[i] = command_row(command)
-        self._spread(sent)
         if lost is None:
             rows[:] = np.array(sent).reshape(rows.shape)
         elif lost.size:
@@ -161,14 +161,6 @@ class SimWorld(World):
             self._report = self._perceive()
         if self.settings.realism.response_loss > 0.0:
             self._felt = self._responses()
-
-    def _spread(self, sent: list[tuple[float, ...]]) -> None:
-        """Draw how much kicks differ from their commands."""
-        spread = self.settings.kicker.speed_spread
-        if spread > 0.0:
-            factors = 1.0 + spread * np.clip(self._rng.standard_normal(len(sent)), -3.0, 3.0)
-            for i, (row, factor) in enumerate(zip(sent, factors.tolist(), strict=True)):
-                sent[i] = (*row[:3], row[3] * factor, *row[4:])
 
     def detections(self) -> list[Detections]:
         """See :meth:`robobt.world.World.detections`; the cameras together, at the time that they claim."""

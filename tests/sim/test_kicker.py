@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from math import cos, hypot, sin
 
+import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from robobt.sim import preset
+from robobt.sim import preset, settings_from
+from robobt.sim.arenas import Arenas
 from robobt.world import BALL_RADIUS, DIVISION_B, KickTrigger, Placement, RobotCommand
+from robobt.world.geometry import FloatArray
 from tests.sim.rig import ME, holding, kick, one_robot
 
 NOW, ON_CONTACT = KickTrigger.NOW, KickTrigger.ON_CONTACT
@@ -116,3 +120,41 @@ def test_a_kick_on_contact_fires_before_the_ball_bounces(
     seen, limits = world.truth().ball, preset(kind).limits
     assert seen.vx == pytest.approx(4.0 - limits.kick_rebound * ball[2], abs=0.1)
     assert seen.vy == pytest.approx(limits.touch_kept * ball[3], abs=0.12 + 0.1 * abs(ball[3]))
+
+
+def test_a_kicker_fires_again_only_when_it_is_charged_but_dribbles_before() -> None:
+    world = holding(settings_from({"kicker": {"charge": 0.5, "recharge": 0.1}}))
+    fired: list[float] = []
+    held = 0
+    while world.time < 1.2:
+        if world.time > 0.1 and not world.truth().own[0].ball_contact:
+            world.put_ball(0.0968, 0, 0, 0)
+        world.act({ME: RobotCommand(kick_speed=0.5, dribbler=True)})
+        fired += [world.time] * len(world.kicks)
+        held += world.truth().own[0].ball_contact
+    assert len(fired) == 3
+    assert all(0.5 <= later - before < 0.51 for before, later in pairwise(fired))
+    assert held > 100
+
+
+def test_kicks_of_arenas_spread_each_by_its_own_seed() -> None:
+    settings = settings_from({"kicker": {"speed_spread": 0.05, "recharge": 0.0}})
+    n, place = 3, preset("default").body.face + BALL_RADIUS + 0.0003
+
+    def speeds(seeds: list[int], kicks: int) -> FloatArray:
+        arenas = Arenas(DIVISION_B, [None], settings, 0.005, n)
+        arenas.seed(seeds)
+        command = np.zeros((n, 1, 7))
+        command[..., 3] = 4.0
+        found = []
+        for _ in range(kicks):
+            arenas.place(np.zeros((n, 1, 3)), np.tile([place, 0.0, 0.0, 0.0], (n, 1)))
+            arenas.step(command)
+            found.append(arenas.balls[:, 2].copy())
+        return np.array(found)
+
+    found = speeds([5, 6, 7], 400)
+    assert found.mean() == pytest.approx(4.0, rel=0.01)
+    np.testing.assert_allclose(found.std(axis=0), 4.0 * 0.05, rtol=0.12)
+    assert abs(np.corrcoef(found.T) - np.eye(n)).max() < 0.2
+    assert (speeds([6, 5, 7], 20)[:, [1, 0, 2]] == found[:20]).all()

@@ -81,6 +81,7 @@ class ServedField:
         self.kicked: list[RobotId] = []
         self.chipped: list[RobotId] = []
         self._arenas = Arenas(field, self._limits, self.settings, self.period, solver="pymunk")
+        self._arenas.seed((seed,))
         self._start(placement)
 
     @property

@@ -45,6 +45,8 @@ class Randomiser:
         self._robot_parameters = arenas.robot_parameters.copy()
         self._grip = arenas.wheel_parameters["tangent_friction"].copy()
         self._mass = settings.simulator.body.mass
+        if settings.simulator.kicker.speed_spread > 0.0:
+            arenas.seed([int(rng.integers(2**31)) for rng in rngs])
 
     def draw(self, which: IntArray) -> None:
         """Draw the parameters of these arenas at the start of their episodes."""
