@@ -14,7 +14,6 @@ from robobt.match.loop import MatchLoop
 from robobt.match.scenario.scenario import Scenario
 from robobt.sim import SimSettings, SimWorld
 from robobt.sim.realism import RealismSettings
-from robobt.sim.robot_settings import KickerSettings
 from robobt.sim.settings import BallSettings
 from robobt.world.ball_model import DEFAULT_BALL
 from robobt.world.command import RobotCommand
@@ -71,7 +70,7 @@ def draw_field(seed: int) -> BlindField:
         other_hops=between(0.85, 0.95),
         rebound=between(0.45, 0.57),
     )
-    kicker = KickerSettings(damping=between(0.0, 0.3))
+    returned = between(0.0, 0.3)
     whole = between(0.020, 0.130)
     vision = between(0.015, min(0.045, whole))
     realism = RealismSettings(
@@ -107,9 +106,9 @@ def draw_field(seed: int) -> BlindField:
                 side_gain=between(0.7, 1.0),
                 turn_gain=between(0.9, 1.0),
                 touch_kept=kept,
-                kick_rebound=kicker.damping,
+                touch_returned=returned,
             )
-    settings = SimSettings(ball=ball, kicker=kicker, realism=realism)
+    settings = SimSettings(ball=ball, realism=realism)
     step = PERIOD / ceil(PERIOD / settings.sub_step - 1e-9)
     seen = round(vision / step)
     delays = {

@@ -86,7 +86,7 @@ def _truths(field: BlindField) -> Iterator[tuple[str, str, float]]:
             for name in ("lag", "side_lag", "turn_lag"):
                 yield "lags", f"{robot}.{name}", getattr(limits, name)
     yield "kick speed", "kicks.share", 1.0
-    yield "one touch", "kicks.returned", settings.kicker.damping
+    yield "one touch", "kicks.returned", next(iter(field.limits.values())).touch_returned
     yield "one touch", "kicks.kept", next(iter(field.limits.values())).touch_kept
     for name in ("ball_noise", "robot_noise", "heading_noise", "missing_ball", "missing_robot"):
         yield "noise and gaps", f"noise.{name}", getattr(settings.realism, name)

@@ -75,9 +75,7 @@ def preset_of(identified: Identification, base: str = "default") -> dict[str, ob
     if kept.seen:
         limits["touch_kept"] = _digits(min(max(kept.value, 0.0), 1.0))
     if returned.seen:
-        share = _digits(min(max(returned.value, 0.0), 1.0))
-        limits["kick_rebound"] = share
-        settings["kicker"] = {"damping": share}
+        limits["touch_returned"] = _digits(min(max(returned.value, 0.0), 1.0))
     for name, part in (("ball", ball), ("limits", limits), ("realism", realism)):
         if part:
             settings[name] = part

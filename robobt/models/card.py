@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Mapping
 from typing import Literal, Self
 
 from pydantic import Field, ValidationError, field_validator, model_validator
@@ -11,7 +12,7 @@ from robobt.config.errors import ConfigError
 from robobt.config.validation import Settings, first_problem
 from robobt.models.actions import ActionScaling
 from robobt.world.features import ObservationSpec, find_observation
-from robobt.world.limits import RobotLimits
+from robobt.world.limits import RobotLimits, limits_as_named_now
 
 MODEL_NAME = r"^[A-Za-z0-9][A-Za-z0-9_.-]{0,63}$"
 """Allowed names of models, as a regular expression."""
@@ -124,6 +125,13 @@ class ModelCard(Settings):
         description="SHA-256 of everything in the file but the card; export fills it in",
     )
 
+    _limits_as_now = field_validator("limits", mode="before")(limits_as_named_now)
+
+    @field_validator("environment", mode="before")
+    @classmethod
+    def _environment_as_now(cls, value: object) -> object:
+        return _as_named_now(value)
+
     @field_validator("environment", "training")
     @classmethod
     def _plain(cls, value: dict[str, object]) -> dict[str, object]:
@@ -157,6 +165,24 @@ class ModelCard(Settings):
     def to_json(self) -> str:
         """Return the card as it is put into files: the same text for the same card."""
         return json.dumps(self.model_dump(mode="json"), indent=1, sort_keys=True, allow_nan=False) + "\n"
+
+
+def _as_named_now(environment: object) -> object:
+    """Return an environment's settings by the present names of limits, one of which the kicker once had."""
+    simulator = environment.get("simulator") if isinstance(environment, Mapping) else None
+    if not isinstance(environment, Mapping) or not isinstance(simulator, Mapping):
+        return environment
+    result, inner, returned = dict(environment), dict(simulator), {}
+    result["simulator"] = inner
+    if isinstance(inner.get("kicker"), Mapping):
+        inner["kicker"] = kicker = dict(inner["kicker"])
+        if "damping" in kicker:
+            returned["touch_returned"] = kicker.pop("damping")
+    for part in (result, inner):
+        limits = limits_as_named_now(part.get("limits"))
+        if isinstance(limits, Mapping):
+            part["limits"] = {**returned, **limits}
+    return result
 
 
 def action_outputs(action: ActionScaling) -> tuple[OutputEntry, ...]:

@@ -127,7 +127,8 @@ def kick(
 ) -> None:
     """Send the ball along the heading; its spin is lost.
 
-    Of its sideways velocity, seen by the robot's front, it keeps the share ``limits.touch_kept``.
+    Of its sideways velocity, seen by the robot's front, it keeps the share ``limits.touch_kept``. The kick
+    adds the share ``limits.touch_returned`` of the speed at which it comes.
 
     Args:
         body: of the ball.
@@ -151,7 +152,7 @@ def kick(
     c, s = cos(robot.heading), sin(robot.heading)
     forward = c * ball.vx + s * ball.vy
     sideways = c * ball.vy - s * ball.vx
-    forward = speed - p.kicker.damping * forward
+    forward = speed - limits.touch_returned * forward
     front = c * robot.vy - s * robot.vx + robot.omega * (c * (body.x - robot.x) + s * (body.y - robot.y))
     sideways -= (1.0 - limits.touch_kept) * (sideways - front)
     fast = hypot(forward, sideways)

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Literal
+from collections.abc import Mapping
+from typing import ClassVar, Literal
 
 from pydantic import Field
 
@@ -112,15 +113,14 @@ class DribblerSettings(Settings):
 
 
 class KickerSettings(Settings):
-    """The kicker. What a kick keeps of the ball's sideways velocity, the robot's limits say.
+    """The kicker. What a kick makes of the ball's own velocity, the robot's limits say.
 
     The speed of each kick is drawn from random numbers of the field's own, which follow from its seed.
     """
 
+    renamed: ClassVar[Mapping[str, str]] = {"damping": "limits.touch_returned of the simulator"}
+
     max_speed: float = Field(6.5, gt=0, le=20, description="fastest ball after a kick [m/s]")
-    damping: float = Field(
-        0.0, ge=0, le=1, description="share of the ball's forward speed taken off the kick"
-    )
     speed_spread: float = Field(
         0.0, ge=0, le=0.3, description="standard deviation of kicks' speeds, as a share of the commanded"
     )

@@ -104,11 +104,11 @@ _GRSIM = SimSettings(
         hold_acceleration=50.0,
         carry_aside=1.1,
         reaction=1 / 60,
-        kick_rebound=0.2,
+        touch_returned=0.2,
     ),
     dribbler=DribblerSettings(kind="glue", reach=0.01),
     kicker=KickerSettings(
-        max_speed=10.0, damping=0.2, recharge=1 / 6, chip_angle=None, chip_yield=0.969, max_chip_speed=10.0
+        max_speed=10.0, recharge=1 / 6, chip_angle=None, chip_yield=0.969, max_chip_speed=10.0
     ),
     contact=ContactSettings(
         front_friction=0.8, hull_friction=0.5, robot_restitution=0.0, robot_friction=0.5, wall_restitution=0.5
@@ -119,7 +119,7 @@ _GRSIM = SimSettings(
 
 def _real(field: RealField, limits: RobotLimits) -> SimSettings:
     """Return a field with robots of these limits. Kicker: Sumatra's ``bot-configs.json``."""
-    touch = {"touch_kept": field.touch_kept, "kick_rebound": field.touch_returned}
+    touch = {"touch_kept": field.touch_kept, "touch_returned": field.touch_returned}
     return SimSettings(
         ball=BallSettings(
             slide_deceleration=field.slide_deceleration,
@@ -130,7 +130,7 @@ def _real(field: RealField, limits: RobotLimits) -> SimSettings:
             rebound=0.48,
         ),
         limits=limits.model_copy(update=touch),
-        kicker=KickerSettings(max_speed=8.0, max_chip_speed=8.0, recharge=0.08, damping=field.touch_returned),
+        kicker=KickerSettings(max_speed=8.0, max_chip_speed=8.0, recharge=0.08),
     )
 
 
@@ -150,11 +150,11 @@ PRESETS: dict[str, SimSettings] = {
             turn_acceleration=50.0,
             catch_speed=4.0,
             hold_acceleration=50.0,
-            kick_rebound=0.2,
+            touch_returned=0.2,
         ),
         dribbler=DribblerSettings(kind="glue", reach=0.01),
         kicker=KickerSettings(
-            max_speed=20.0, damping=0.2, recharge=0.25, chip_angle=None, chip_yield=0.969, max_chip_speed=20.0
+            max_speed=20.0, recharge=0.25, chip_angle=None, chip_yield=0.969, max_chip_speed=20.0
         ),
         contact=ContactSettings(front_restitution=0.05, hull_restitution=0.5, wall_restitution=0.5),
     ),
@@ -209,10 +209,10 @@ PRESETS: dict[str, SimSettings] = {
             hold_acceleration=15.0,
             # What its authors expect of simulators; real fields' figures are those of real_2022 to real_2025.
             touch_kept=0.8,
-            kick_rebound=0.2,
+            touch_returned=0.2,
         ),
         dribbler=DribblerSettings(kind="force", pull=20.0, side=20.0, reach=0.01),
-        kicker=KickerSettings(max_speed=7.5, max_chip_speed=5.5, damping=0.2),
+        kicker=KickerSettings(max_speed=7.5, max_chip_speed=5.5),
         contact=ContactSettings(front_restitution=0.0, goal_restitution=0.3),
     ),
     "robobulls": SimSettings(
@@ -228,9 +228,7 @@ PRESETS: dict[str, SimSettings] = {
             }
         ),
         dribbler=DribblerSettings(kind="glue", reach=0.011, idle_hold=4.3),
-        kicker=KickerSettings(
-            max_speed=7.5, damping=0.2, chip_angle=None, chip_yield=0.969, max_chip_speed=10.0
-        ),
+        kicker=KickerSettings(max_speed=7.5, chip_angle=None, chip_yield=0.969, max_chip_speed=10.0),
         contact=ContactSettings(front_restitution=0.06, hull_restitution=0.5, wall_restitution=0.5),
     ),
     **{name: _real(field, REAL_LIMITS) for name, field in REAL_FIELDS.items()},

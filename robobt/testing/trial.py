@@ -42,8 +42,8 @@ def yellow(number: int) -> RobotId:
 class Trial:
     """Trees on robots in the simulator; all places are as blue sees the field.
 
-    As in a match, trees see frames that are predicted over delays, and robots with known gains are commanded
-    what they need to do as told.
+    As in a match, trees see frames that are predicted over delays, and commands are divided by the gains of
+    the robots.
 
     ::
 

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from typing import ClassVar
+
 from pydantic import Field
 
 from robobt.config.validation import Settings
@@ -20,6 +23,8 @@ class RobotLimits(Settings):
     ``cross_ahead`` of the sideways and ``cross_aside`` of the forward velocity appear on the other axis. The
     speeds and accelerations above limit the result.
     """
+
+    renamed: ClassVar[Mapping[str, str]] = {"kick_rebound": "touch_returned"}
 
     max_speed: float = Field(3.0, gt=0, le=10, description="top speed in any direction [m/s]")
     acceleration: float = Field(3.0, gt=0, le=50, description="speeding up along the heading [m/s^2]")
@@ -65,7 +70,7 @@ class RobotLimits(Settings):
     touch_kept: float = Field(
         1.0, ge=0, le=1, description="share of a ball's sideways velocity, seen by the robot, kept by a kick"
     )
-    kick_rebound: float = Field(
+    touch_returned: float = Field(
         0.0, ge=0, le=1, description="share of the speed of a ball that comes at the robot which a kick adds"
     )
 
@@ -138,6 +143,16 @@ class RobotLimits(Settings):
         return self.model_copy(
             update={"max_speed": self.max_speed * factor, "max_turn": self.max_turn * factor}
         )
+
+
+def limits_as_named_now(data: object) -> object:
+    """Return plain data of limits, by the present names of fields that earlier versions called otherwise.
+
+    For what robobt itself has written, such as recordings; the error for another file names the new field.
+    """
+    if not isinstance(data, Mapping):
+        return data
+    return {RobotLimits.renamed.get(str(name), name): value for name, value in data.items()}
 
 
 _AS_COMMANDED = (1.0, 1.0, 1.0, 0.0, 0.0)

@@ -70,6 +70,7 @@ class Limits(Protocol):
     cross_ahead: float
     cross_aside: float
     touch_kept: float
+    touch_returned: float
 
 
 class Mover(Protocol):

@@ -16,6 +16,7 @@ from robobt.models.card import (
     read_card,
 )
 from robobt.world.features import GO_TO_BALL, OBSERVATIONS
+from robobt.world.limits import RobotLimits
 from tests.models.made_models import go_to_ball_card, predictor_card, shoot_card
 
 
@@ -101,3 +102,18 @@ def test_a_predictor_answers_a_probability_and_has_no_action() -> None:
     data = json.loads(predictor_card().to_json()) | {"action": GO_TO_BALL_ACTION.model_dump()}
     with pytest.raises(ModelCardError, match="only a policy"):
         read_card(json.dumps(data))
+
+
+def test_limits_of_an_earlier_version_are_read_by_their_present_names() -> None:
+    card = json.loads(shoot_card().to_json())
+    limits = {"max_speed": 2.0, "kick_rebound": 0.1}
+    card["limits"] = limits
+    card["environment"] = {
+        "limits": {"max_speed": 2.0},
+        "simulator": {"kicker": {"damping": 0.2, "max_speed": 6.0}, "limits": dict(limits)},
+    }
+    read = read_card(json.dumps(card))
+    assert read.limits == RobotLimits(max_speed=2.0, touch_returned=0.1)
+    now = {"max_speed": 2.0, "touch_returned": 0.1}
+    assert read.environment["simulator"] == {"kicker": {"max_speed": 6.0}, "limits": now}
+    assert read.environment["limits"] == {"max_speed": 2.0, "touch_returned": 0.2}

@@ -127,8 +127,8 @@ def test_the_command_for_a_velocity_reaches_it() -> None:
 
 def leaves_at(kept: float, rebound: float) -> float:
     """Return the angle [deg] at which a ball leaves that came at 4 m/s and 45 degrees, kicked at 4.5 m/s."""
-    settings = preset("default", kicker=KickerSettings(damping=rebound))
-    limits = settings.limits.model_copy(update={"touch_kept": kept, "kick_rebound": rebound})
+    settings = preset("default")
+    limits = settings.limits.model_copy(update={"touch_kept": kept, "touch_returned": rebound})
     speed = 4.0 * 0.5**0.5
     front = settings.body.face + BALL_RADIUS
     ball = (front + speed * 0.1, speed * 0.1, -speed, -speed)

@@ -118,7 +118,7 @@ def test_a_kick_on_contact_fires_before_the_ball_bounces(
         world.act({ME: RobotCommand(vx=drives, kick_speed=4.0)})
         assert world.time < 1.5, "it never fires"
     seen, limits = world.truth().ball, preset(kind).limits
-    assert seen.vx == pytest.approx(4.0 - limits.kick_rebound * ball[2], abs=0.1)
+    assert seen.vx == pytest.approx(4.0 - limits.touch_returned * ball[2], abs=0.1)
     assert seen.vy == pytest.approx(limits.touch_kept * ball[3], abs=0.12 + 0.1 * abs(ball[3]))
 
 

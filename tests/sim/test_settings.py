@@ -8,6 +8,7 @@ import pytest
 from pydantic import ValidationError
 
 from robobt.config.errors import ConfigError
+from robobt.config.validation import first_problem
 from robobt.sim import PRESETS, REALISM, SimSettings, preset, settings_from
 
 
@@ -83,16 +84,28 @@ def test_a_name_is_a_preset() -> None:
     assert settings_from("grsim") == preset("grsim")
 
 
-@pytest.mark.parametrize("name", sorted(PRESETS))
-def test_robots_know_what_their_kicker_adds_to_a_ball_that_comes(name: str) -> None:
-    settings = PRESETS[name]
-    assert settings.limits.kick_rebound == settings.kicker.damping
+@pytest.mark.parametrize("name", ["grsim", "rsim", "robobulls"])
+def test_a_kick_adds_to_a_ball_that_comes_what_grsims_does(name: str) -> None:
+    assert preset(name).limits.touch_returned == 0.2
+
+
+@pytest.mark.parametrize(
+    ("given", "now"),
+    [
+        ({"limits": {"kick_rebound": 0.2}}, "touch_returned"),
+        ({"kicker": {"damping": 0.2}}, "limits.touch_returned"),
+    ],
+)
+def test_an_old_name_is_answered_with_the_new_one(given: dict[str, object], now: str) -> None:
+    with pytest.raises(ValidationError) as caught:
+        settings_from(given)
+    assert f"has been renamed: use {now}" in first_problem(caught.value, SimSettings, given)[1]
 
 
 def test_a_mapping_changes_a_preset_and_keeps_the_rest() -> None:
     settings = settings_from({"preset": "grsim", "kicker": {"max_speed": 6.5}, "realism": "realistic"})
     assert settings.kicker.max_speed == 6.5
-    assert settings.kicker.damping == preset("grsim").kicker.damping
+    assert settings.kicker.recharge == preset("grsim").kicker.recharge
     assert settings.realism == REALISM["realistic"]
     assert settings.ball == preset("grsim").ball
 
@@ -140,7 +153,7 @@ def test_a_wrong_setting_is_named(changes: dict[str, object], field: str) -> Non
 def test_presets_of_real_robots_and_fields_have_one_touch_of_their_own(name: str) -> None:
     settings = preset(name)
     assert settings.limits.touch_kept < 1.0
-    assert settings.limits.kick_rebound == settings.kicker.damping
+    assert 0.0 < settings.limits.touch_returned < 0.6
 
 
 def test_identified_robots_reach_a_part_of_their_commands() -> None:

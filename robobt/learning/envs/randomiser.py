@@ -15,7 +15,7 @@ _ACCELERATIONS = ("acceleration", "braking", "lateral_acceleration", "lateral_br
 
 _LAGS = ("lag", "side_lag", "turn_lag")
 _GAINS = ("gain", "side_gain", "turn_gain")
-_ANSWERS = ("lag", "gain", "touch_kept")
+_ANSWERS = ("lag", "gain", "touch_kept", "touch_returned")
 
 
 class Randomiser:
@@ -90,6 +90,9 @@ class Randomiser:
             now[name][which] = own[name][which] * _within(ranges.gain, share)
         if ranges.touch_kept is not None:
             now["touch_kept"][which] = _within(ranges.touch_kept, drawn[6])
+        if ranges.touch_returned is not None:
+            share = np.array([self._rngs[arena].random() for arena in which.tolist()])
+            now["touch_returned"][which] = _within(ranges.touch_returned, share)
 
 
 def _within(span: Span, share: FloatArray) -> FloatArray:

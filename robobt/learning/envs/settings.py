@@ -88,8 +88,8 @@ class MemorySettings(Settings):
 class RandomisationSettings(OrderedSettings):
     """Domain randomisation: each parameter is drawn uniformly from its range at the start of an episode.
 
-    All are factors on the simulator's value, except delay and lag, which are added to it, and ``touch_kept``,
-    which replaces it. The axes' lags and gains are drawn independently.
+    All are factors on the simulator's value, except delay and lag, which are added to it, and what a touch
+    keeps and returns, which replace it. The axes' lags and gains are drawn independently.
     """
 
     friction: Span = Field((1.0, 1.0), description="on the ball's sliding and rolling deceleration")
@@ -106,6 +106,9 @@ class RandomisationSettings(OrderedSettings):
     touch_kept: Span | None = Field(
         None, description="share of the ball's sideways velocity that a kick keeps; none for the limits'"
     )
+    touch_returned: Span | None = Field(
+        None, description="share of the speed of a ball that comes which a kick adds; none for the limits'"
+    )
 
     @model_validator(mode="after")
     def _sensible(self) -> Self:
@@ -118,8 +121,10 @@ class RandomisationSettings(OrderedSettings):
             raise ValueError("control_delay must lie in [0, 0.5] s")
         if not 0.0 <= self.lag[0] <= self.lag[1] <= 0.3:
             raise ValueError("lag must lie in [0, 0.3] s")
-        if self.touch_kept is not None and not 0.0 <= self.touch_kept[0] <= self.touch_kept[1] <= 1.0:
-            raise ValueError("touch_kept must lie in [0, 1]")
+        for name in ("touch_kept", "touch_returned"):
+            share = getattr(self, name)
+            if share is not None and not 0.0 <= share[0] <= share[1] <= 1.0:
+                raise ValueError(f"{name} must lie in [0, 1]")
         return self
 
 

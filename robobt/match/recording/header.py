@@ -7,7 +7,7 @@ from enum import IntFlag
 from pathlib import Path
 from typing import Any
 
-from pydantic import Field, FiniteFloat, model_validator
+from pydantic import Field, FiniteFloat, field_validator, model_validator
 
 from robobt import __version__
 from robobt.config.errors import RobobtError, one_line
@@ -16,7 +16,7 @@ from robobt.tree.drawing import NodeKind
 from robobt.world.ball_model import DEFAULT_BALL, BallModel
 from robobt.world.field import FieldGeometry
 from robobt.world.game import Team
-from robobt.world.limits import DEFAULT_LIMITS, RobotLimits
+from robobt.world.limits import DEFAULT_LIMITS, RobotLimits, limits_as_named_now
 from robobt.world.state import ROBOT_RADIUS, RobotId
 
 RECORDING_FORMAT = "robobt-recording"
@@ -77,6 +77,8 @@ class RecordedRobot(Settings):
     mouth: float = Field(0.075, gt=0, le=1, description="centre to flat front [m]")
     limits: RobotLimits = Field(DEFAULT_LIMITS, description="the robot's limits as its tree sees them")
     tree: tuple[RecordedNode, ...] = Field((), description="filled in by the recorder")
+
+    _limits_as_now = field_validator("limits", mode="before")(limits_as_named_now)
 
     @property
     def id(self) -> RobotId:

@@ -259,7 +259,7 @@ class KickToTarget(DrivingSkill):
             return False
         # A ball that rolls towards the robot leaves faster than the kick alone, if the kicker allows it.
         self.store.command.kick_speed = max(
-            _LEAST_KICK, order.speed + me.limits.kick_rebound * min(ahead, 0.0)
+            _LEAST_KICK, order.speed + me.limits.touch_returned * min(ahead, 0.0)
         )
         self.store.command.kick_angle = order.angle
         self.store.command.kick_trigger = KickTrigger.ON_CONTACT

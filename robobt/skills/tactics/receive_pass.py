@@ -120,7 +120,7 @@ class ReceivePass(Skill):
             incoming_x, incoming_y = velocity_for_kick(me, ux * v, uy * v)
             order.kick_speed = (
                 redirect_kick(c * incoming_y - s * incoming_x, tactics.shot_speed, tactics.fastest)
-                + me.limits.kick_rebound * (c * ux + s * uy) * v
+                + me.limits.touch_returned * (c * ux + s * uy) * v
             )
             order.kick_trigger = KickTrigger.ON_CONTACT
             self._armed, self._armed_at = order.kick_speed, frame.time

@@ -121,6 +121,16 @@ def test_parameters_are_drawn_evenly_from_their_ranges_for_each_episode() -> Non
     assert (made.arenas.arena_parameters["ball"]["roll_deceleration"] != before).all()
 
 
+def test_how_robots_answer_is_drawn_for_each_episode() -> None:
+    ranges = {"lag": (0.02, 0.05), "gain": (0.7, 1.0), "touch_kept": (0.2, 0.8), "touch_returned": (0.0, 0.5)}
+    drawn = task(randomisation=ranges).arenas.robot_parameters[:, 0]
+    for name, (low, high) in ranges.items():
+        assert low <= drawn[name].min() < low + 0.1 * (high - low)
+        assert high - 0.1 * (high - low) < drawn[name].max() <= high
+    # The axes differ.
+    assert abs(np.corrcoef(drawn["gain"], drawn["side_gain"])[0, 1]) < 0.5
+
+
 @pytest.mark.integration
 def test_acceleration_changes_how_fast_robots_get_and_their_optimum() -> None:
     made = task(randomisation={"acceleration": (0.5, 1.5)})

@@ -70,7 +70,7 @@ def test_off_its_aim_it_turns_with_the_ball_and_does_not_kick() -> None:
 
 
 def test_a_ball_that_comes_is_kicked_softer_by_what_the_kicker_returns_of_its_speed() -> None:
-    me = robot(contact=True, limits=RobotLimits(kick_rebound=0.2))
+    me = robot(contact=True, limits=RobotLimits(touch_returned=0.2))
     for vx, speed in ((-2.0, 3.1), (0.0, 3.5), (1.0, 3.5)):
         alone = Alone(KickToTarget(target=GOAL, kick_speed=3.5))
         alone.tick(frame(me, ball=(*held(me), vx, 0.0)))

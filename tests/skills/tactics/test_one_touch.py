@@ -22,9 +22,7 @@ from tests.sim.rig import ME, one_robot
 
 def touching(kept: float, returned: float) -> SimSettings:
     """Robots whose kicks on the first touch treat the ball so."""
-    return settings_from(
-        {"limits": {"touch_kept": kept, "kick_rebound": returned}, "kicker": {"damping": returned}}
-    )
+    return settings_from({"limits": {"touch_kept": kept, "touch_returned": returned}})
 
 
 def kicked_on(limits: RobotLimits, speed: float, angle: float, kick: float, drifts: float) -> float:
@@ -46,13 +44,13 @@ def kicked_on(limits: RobotLimits, speed: float, angle: float, kick: float, drif
     command = RobotCommand(
         s * drifts,
         c * drifts,
-        kick_speed=ahead + limits.kick_rebound * (c * vx + s * vy),
+        kick_speed=ahead + limits.touch_returned * (c * vx + s * vy),
         kick_trigger=KickTrigger.ON_CONTACT,
     )
     # It meets the mouth after 0.05 s.
     late = 0.05
     ball = (MOUTH * c - late * vx, MOUTH * s + late * (drifts - vy), vx, vy)
-    world = one_robot(touching(limits.touch_kept, limits.kick_rebound), limits=limits)
+    world = one_robot(touching(limits.touch_kept, limits.touch_returned), limits=limits)
     world.reset(Placement({ME: (0.0, 0.0, heading)}, ball, {ME: (0.0, drifts)}), seed=0)
     while not world.kicks:
         world.act({ME: command})
@@ -64,7 +62,7 @@ def kicked_on(limits: RobotLimits, speed: float, angle: float, kick: float, drif
 def test_the_ball_of_real_fields_goes_where_it_is_aimed() -> None:
     # Aimed as for a ball that keeps all of its speed across, it leaves by 19 degrees beside it.
     for angle in (-45.0, 45.0):
-        off = kicked_on(RobotLimits(touch_kept=0.4, kick_rebound=0.1), 4.0, radians(angle), 4.5, 0.0)
+        off = kicked_on(RobotLimits(touch_kept=0.4, touch_returned=0.1), 4.0, radians(angle), 4.5, 0.0)
         assert abs(degrees(off)) < 2.0
 
 
@@ -79,7 +77,7 @@ def test_the_ball_of_real_fields_goes_where_it_is_aimed() -> None:
 def test_it_does_whatever_a_touch_keeps_and_returns(
     kept: float, returned: float, speed: float, angle: float, drifts: float
 ) -> None:
-    off = kicked_on(RobotLimits(touch_kept=kept, kick_rebound=returned), speed, angle, 4.5, drifts)
+    off = kicked_on(RobotLimits(touch_kept=kept, touch_returned=returned), speed, angle, 4.5, drifts)
     assert abs(degrees(off)) < 2.0
 
 
