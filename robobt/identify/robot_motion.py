@@ -27,7 +27,7 @@ DRIVE_PARAMETERS = (
     "cross_ahead",
     "cross_aside",
 )
-"""What :func:`follow` takes, in this order [s, m/s, m/s^2, rad/s, rad/s^2, shares, s, shares]."""
+"""What :func:`motion_after` takes, in this order [s, m/s, m/s^2, rad/s, rad/s^2, shares, s, shares]."""
 
 _MOTION_STEP = 1 / 240
 """Longest step of the motion [s]."""
@@ -80,7 +80,7 @@ def _caught_up(lag: float, dt: float) -> float:
 
 
 @compiled
-def follow(
+def motion_after(
     p: FloatArray,
     times: FloatArray,
     poses: FloatArray,

@@ -15,7 +15,7 @@ import numpy as np
 from robobt.identify.disturbance import undisturbed
 from robobt.identify.estimate import Estimate, quantile, unseen
 from robobt.identify.observations import Observations
-from robobt.identify.robot_motion import DRIVE_PARAMETERS, follow
+from robobt.identify.robot_motion import DRIVE_PARAMETERS, motion_after
 from robobt.world.geometry import FloatArray
 from robobt.world.state import RobotId
 
@@ -115,7 +115,7 @@ def identify_robot(seen: Observations, robot: int) -> RobotEstimate:
         return RobotEstimate(seen.robots[robot], {n: unseen(0, UNITS[n]) for n in DRIVE_PARAMETERS}, True)
 
     def misses(p: FloatArray) -> FloatArray:
-        found = follow(p, times, poses, seen.sent, commands, trust, _PATIENCE)
+        found = motion_after(p, times, poses, seen.sent, commands, trust, _PATIENCE)
         found[~mask] = np.nan
         return found
 

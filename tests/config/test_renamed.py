@@ -4,15 +4,17 @@ import pytest
 
 from robobt.config.errors import unknown_name
 from robobt.config.renamed import RENAMED
-from robobt.config.resources import bundled_scenarios
+from robobt.config.resources import bundled_scenarios, models_folder
 from robobt.match import ScenarioError, load_scenario
+from robobt.models.find import list_models
 from robobt.plays import PLAYS
 from robobt.tournament.entrants import EntrantError, read_entrant
 
 
 def test_what_a_name_has_become_is_there() -> None:
-    assert set(RENAMED.values()) <= {*PLAYS, *bundled_scenarios()}
-    assert not set(RENAMED) & {*PLAYS, *bundled_scenarios()}
+    models = {path.stem for path in list_models(models_folder())}
+    assert set(RENAMED.values()) <= {*PLAYS, *bundled_scenarios(), *models}
+    assert not set(RENAMED) & {*PLAYS, *bundled_scenarios(), *models}
 
 
 def test_an_old_scenario_is_answered_with_the_new_name() -> None:
