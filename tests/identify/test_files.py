@@ -134,3 +134,11 @@ def test_an_unknown_base_is_a_usage_error(recording: Path) -> None:
     done = CliRunner().invoke(app, ["record", "identify", str(recording), "--base", "other"])
     assert done.exit_code == 2
     assert "no simulator preset is called 'other'" in done.stderr
+
+
+def test_a_recording_without_realism_shows_what_is(tmp_path: Path) -> None:
+    seen = load_observations(
+        played(load_scenario("three_v_three").lasting(2.0), tmp_path / "p.robobt.arrows")
+    )
+    assert len(seen) > 50
+    assert not np.isnan(seen.poses).any()

@@ -90,7 +90,8 @@ class _BatchReader:
             raise self._error(self._ticks, None, "lacks numbers")
         self._times.append(time.to_numpy())
         self._truth.append(numbers_of(truth))
-        self._observed.append(self._truth[-1] if observed.null_count else numbers_of(observed))
+        same = observed.null_count == len(batch)  # as in a batch that holds the outcome and no tick
+        self._observed.append(self._truth[-1] if same else numbers_of(observed))
         self._commands.append(numbers_of(commands))
         self._read_detections(time, detections)
         self._text += changes.nbytes

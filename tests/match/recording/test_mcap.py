@@ -50,7 +50,9 @@ def written(recording: Recording, folder: Path) -> Messages:
 
 
 def test_topics_counts_and_times_of_a_match_are_those_of_its_recording(tmp_path: Path) -> None:
-    scenario = load_scenario("three_v_three").lasting(1.0)
+    # Noise, so that what trees see is not what is.
+    noisy = {"realism": {"ball_noise": 0.001}}
+    scenario = load_scenario("three_v_three").lasting(1.0).model_copy(update={"simulator": noisy})
     with MatchLoop(scenario, 3, sim_world, tmp_path / "m.robobt.arrows", layers=("paths",)) as match:
         match.play()
     recording = load_recording(tmp_path / "m.robobt.arrows")

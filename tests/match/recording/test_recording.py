@@ -817,3 +817,11 @@ def test_recording_changes_nothing_of_what_is_played(path: Path) -> None:
     scenario = load_scenario("three_v_three").lasting(4.0)
     bare = MatchLoop(scenario, 5, sim_world).play()
     assert MatchLoop(scenario, 5, sim_world, path).play().trace == bare.trace
+
+
+def test_a_match_in_which_trees_see_the_truth_holds_it_once(tmp_path: Path) -> None:
+    path = tmp_path / "plain.robobt.arrows"
+    with MatchLoop(load_scenario("striker_vs_goalkeeper").lasting(0.5), 0, sim_world, record=path) as match:
+        while match.tick():
+            pass
+    assert load_recording(path).observed is None
