@@ -81,15 +81,20 @@ def mean_interval(values: ArrayLike, confidence: float = 0.95) -> Interval:
         raise ValueError(f"confidence must lie between 0 and 1, not {confidence}")
     if len(sample) == 1:
         return Interval(-np.inf, np.inf)
-    quantile = _student_quantile(len(sample) - 1, 0.5 + confidence / 2.0)
+    quantile = student_quantile(len(sample) - 1, 0.5 + confidence / 2.0)
     half = quantile * float(sample.std(ddof=1)) / sqrt(len(sample))
     middle = float(sample.mean())
     return Interval(middle - half, middle + half)
 
 
 @lru_cache(maxsize=256)
-def _student_quantile(degrees: int, probability: float) -> float:
-    """Return the value below which Student's distribution has this probability, of more than a half."""
+def student_quantile(degrees: int, probability: float) -> float:
+    """Return the value below which Student's distribution has a probability.
+
+    Args:
+        degrees: of freedom, at least 1.
+        probability: more than a half and less than 1.
+    """
     low, high = 0.0, 1.0
     while _student_inside(degrees, high) < 2.0 * probability - 1.0:
         low, high = high, 2.0 * high

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from math import hypot, inf, isfinite, nan
+from statistics import NormalDist
 
 import numpy as np
 
-from robobt.statistics import mean_interval
+from robobt.statistics import mean_interval, student_quantile
 from robobt.world.geometry import FloatArray
 
 CONFIDENCE = 0.95
@@ -72,20 +73,9 @@ def from_error(
 
 
 def quantile(freedom: int) -> float:
-    """Return the two-sided 95 % point of Student's distribution; of the normal one for 0.
-
-    Source: Hill's series in 1 / freedom, right to 1 % from three degrees on.
-    """
-    z = 1.959964
-    if freedom <= 0:
-        return z
-    n = float(freedom)
-    if n < 3:
-        return {1: 12.706, 2: 4.303}[int(n)]
-    first = (z**3 + z) / 4.0
-    second = (5 * z**5 + 16 * z**3 + 3 * z) / 96.0
-    third = (3 * z**7 + 19 * z**5 + 17 * z**3 - 15 * z) / 384.0
-    return z + first / n + second / n**2 + third / n**3
+    """Return the two-sided 95 % point of Student's distribution; of the normal one for 0."""
+    point = 0.5 + CONFIDENCE / 2.0
+    return student_quantile(freedom, point) if freedom > 0 else NormalDist().inv_cdf(point)
 
 
 def of_values(values: FloatArray, least: int, unit: str = "") -> Estimate:

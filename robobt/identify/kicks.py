@@ -12,6 +12,7 @@ from robobt.identify.ball import SeenKick
 from robobt.identify.ball_ways import MOUTH_DISTANCE
 from robobt.identify.estimate import Estimate, from_error, unseen
 from robobt.identify.observations import Observations
+from robobt.world.geometry import FloatArray
 
 _KICK_TIME = 0.07
 """The heading at a kick is that of a line through what was seen within this time of it [s]."""
@@ -26,7 +27,7 @@ _UNLIMITED_KICK = 6.35
 """A faster ball may have been held back by the kicker at the rules' limit, and its speed tells nothing of a
 touch [m/s]."""
 
-_LEAST_KICKS = 3
+_LEAST_KICKS, _LEAST_TOUCHES = 3, 4
 
 _MOST_SHARE_ERROR, _MOST_TOUCH_ERROR = 0.1, 0.1
 """Half widths of intervals beyond which the share of a command and those of a touch are not seen enough."""
@@ -69,6 +70,11 @@ class _Kick:
     first_touch: bool
     turn: float
     front: float
+
+    @property
+    def held_back(self) -> bool:
+        """Whether the kicker may have held the ball back at the rules' limit."""
+        return self.first_touch and hypot(self.ahead, self.aside) >= _UNLIMITED_KICK
 
 
 def identify_kicks(seen: Observations, kicks: list[SeenKick], delay: float | None) -> KickEstimate:
@@ -139,6 +145,43 @@ def _commanded(seen: Observations, kick: SeenKick, delay: float | None) -> float
 def _shares(kicks: list[_Kick]) -> tuple[Estimate, Estimate, Estimate, Estimate]:
     """Return the share of the command, its spread, and the shares that touches give back and keep.
 
+    Among few touches a misread one, such as that of a ball that met the hull before the mouth, looks as good
+    as any. So the errors of a touch's shares are at least the jackknife's over touches.
+    """
+    fitted = _fitted(kicks)
+    if fitted is None:
+        count = sum(not kick.held_back for kick in kicks)
+        return unseen(count), unseen(count), unseen(), unseen()
+    numbers, deviations, residuals = fitted
+    touches = [kick for kick in kicks if kick.first_touch]
+    without = [_fitted([other for other in kicks if other is not kick]) for kick in touches]
+    if len(touches) >= _LEAST_TOUCHES and all(it is not None for it in without):
+        others = np.array([it.numbers for it in without if it is not None])
+        jackknife = np.sqrt((len(touches) - 1) * np.mean((others - others.mean(axis=0)) ** 2, axis=0))
+        deviations[1:] = np.maximum(deviations[1:], jackknife[1:])
+    count, free = len(residuals), sum(not kick.held_back for kick in touches)
+    freedom = max(count - 1, 1)
+    deviation = sqrt(float(np.sum(residuals**2)) / freedom)
+    half = 1.96 * deviation / sqrt(2.0 * freedom)
+    return (
+        _judged(numbers[0], deviations[0], count, _LEAST_KICKS, _MOST_SHARE_ERROR),
+        Estimate(deviation, max(deviation - half, 0.0), deviation + half, count, count >= 5),
+        _judged(numbers[1], deviations[1], free, _LEAST_TOUCHES, _MOST_TOUCH_ERROR),
+        _judged(numbers[2], deviations[2], len(touches), _LEAST_TOUCHES, _MOST_TOUCH_ERROR),
+    )
+
+
+class _Fit(NamedTuple):
+    """Shares of command, approach and sideways speed, their errors, and the relative misses of good kicks."""
+
+    numbers: FloatArray
+    deviations: FloatArray
+    residuals: FloatArray
+
+
+def _fitted(kicks: list[_Kick]) -> _Fit | None:
+    """Fit the three shares; None if too few kicks tell how fast a commanded ball leaves.
+
     Each kick tells how fast the ball left, unless a limit held it back, and each first touch how it left
     aside; both are linear in the three shares. The direction of a ball that a limit held back is as without.
     """
@@ -151,7 +194,7 @@ def _shares(kicks: list[_Kick]) -> tuple[Estimate, Estimate, Estimate, Estimate]
             values.append(kick.front)
             angle_error = hypot(_ANGLE_ERROR, _TIME_ERROR * kick.turn)
             errors.append(hypot(angle_error * kick.ahead, _SPEED_ERROR))
-        if hypot(kick.ahead, kick.aside) < _UNLIMITED_KICK or not kick.first_touch:
+        if not kick.held_back:
             # How a ball that the robot had moved on its own is not known well.
             unsure = 0.0 if kick.first_touch else _HELD_ERROR * kick.came_ahead
             rows.append((kick.commanded, -kick.came_ahead if kick.first_touch else 0.0, 0.0))
@@ -159,7 +202,7 @@ def _shares(kicks: list[_Kick]) -> tuple[Estimate, Estimate, Estimate, Estimate]
             errors.append(hypot(_LENGTH_ERROR * kick.commanded, _SPEED_ERROR, unsure))
     lengths = [i for i, row in enumerate(rows) if row[2] == 0.0 and row[0] > 0.0]
     if len(lengths) < _LEAST_KICKS:
-        return unseen(len(lengths)), unseen(len(lengths)), unseen(), unseen()
+        return None
     matrix, left, error = np.array(rows), np.array(values), np.array(errors)
     numbers, weights = _EXPECTED_SHARES.copy(), 1.0 / error**2
     spread = 1.0
@@ -171,25 +214,14 @@ def _shares(kicks: list[_Kick]) -> tuple[Estimate, Estimate, Estimate, Estimate]
         size = (left - matrix @ numbers) / error
         spread = max(1.0, 1.4826 * float(np.median(np.abs(size[lengths]))))
         weights = 1.0 / (error * spread) ** 2 / (1.0 + (size / (3.0 * spread)) ** 2) ** 2
-    deviations = np.sqrt(np.diag(np.linalg.inv(normal)))
-    residuals = (left - matrix @ numbers)[lengths] / matrix[lengths, 0]
+    misses = (left - matrix @ numbers)[lengths] / matrix[lengths, 0]
     good = np.abs(size[lengths]) < _OUTLYING_KICK * spread
-    count, touches = int(good.sum()), sum(kick.first_touch for kick in kicks)
-    returns = sum(kick.first_touch and hypot(kick.ahead, kick.aside) < _UNLIMITED_KICK for kick in kicks)
-    freedom = max(count - 1, 1)
-    deviation = sqrt(float(np.sum(residuals[good] ** 2)) / freedom)
-    half = 1.96 * deviation / sqrt(2.0 * freedom)
-    return (
-        _judged(numbers[0], deviations[0], count, count >= _LEAST_KICKS, _MOST_SHARE_ERROR, freedom),
-        Estimate(deviation, max(deviation - half, 0.0), deviation + half, count, count >= 5),
-        _judged(numbers[1], deviations[1], returns, touches > 0, _MOST_TOUCH_ERROR),
-        _judged(numbers[2], deviations[2], touches, touches > 0, _MOST_TOUCH_ERROR),
-    )
+    return _Fit(numbers, np.sqrt(np.diag(np.linalg.inv(normal))), misses[good])
 
 
-def _judged(value: float, error: float, count: int, enough: bool, most: float, freedom: int = 0) -> Estimate:
-    estimate = from_error(float(value), float(error), count, enough, freedom=freedom)
-    return replace(estimate, seen=enough and estimate.half_width < most)
+def _judged(value: float, error: float, count: int, least: int, most: float) -> Estimate:
+    estimate = from_error(float(value), float(error), count, count >= least, freedom=max(count - 1, 1))
+    return replace(estimate, seen=estimate.seen and estimate.half_width < most)
 
 
 _EXPECTED_SHARES, _SHARES_ERROR = np.array([1.0, 0.12, 0.6]), np.array([0.2, 0.15, 0.4])

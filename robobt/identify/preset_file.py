@@ -10,28 +10,13 @@ from robobt.config.atomic import write_atomically
 from robobt.config.yaml import write_yaml
 from robobt.identify.estimate import Estimate
 from robobt.identify.report import Identification
+from robobt.identify.robot_motion import DRIVE_PARAMETERS
 
 _SIGNIFICANT_DIGITS = 4
 """Significant digits in the file."""
 
-_LIMITS = (
-    "max_speed",
-    "acceleration",
-    "braking",
-    "side_acceleration",
-    "side_braking",
-    "max_turn",
-    "turn_acceleration",
-    "gain",
-    "side_gain",
-    "turn_gain",
-    "lag",
-    "side_lag",
-    "turn_lag",
-    "cross_ahead",
-    "cross_aside",
-)
-
+_LIMITS = DRIVE_PARAMETERS[1:]
+"""Fields of a robot's limits that are identified: all but its delay."""
 
 _AT_LEAST = {"cross_ahead": -0.5, "cross_aside": -0.5}
 """Least values of limits, where that is not 0."""

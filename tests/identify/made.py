@@ -104,3 +104,20 @@ def kicked(settings: SimSettings, kicks: int = 12, seed: int = 0) -> Observation
             asked = speed if 10 <= tick < 40 else 0.0
             watched.tick({robot: RobotCommand(0.0, 0.0, 0.0, asked)})
     return watched.observations()
+
+
+def touched(settings: SimSettings, touches: int, seed: int = 0) -> Observations:
+    """Return what cameras saw of balls that rolled to blue 0 from aside, kicked at the first touch."""
+    robot = RobotId(Team.BLUE, 0)
+    watched = Watched({robot: settings.limits}, settings)
+    rng = np.random.default_rng(seed)
+    watched.world.reset(Placement(robots={robot: (-3.0, 0.0, 0.0)}, ball=(0.0, 2.0, 0.0, 0.0)), seed)
+    for _ in range(touches):
+        watched.world.put_robot(robot, -3.0, 0.0, 0.0)
+        angle = float(rng.choice([-1.0, 1.0]) * rng.uniform(0.3, 0.7))
+        c, s = float(np.cos(angle)), float(np.sin(angle))
+        watched.world.put_ball(-2.9 + 1.5 * c, 1.5 * s, -3.5 * c, -3.5 * s)
+        speed = float(rng.uniform(2.0, 3.5))
+        for _ in range(round(2.0 / PERIOD)):
+            watched.tick({robot: RobotCommand(0.0, 0.0, 0.0, speed)})
+    return watched.observations()

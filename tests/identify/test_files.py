@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import shlex
 from pathlib import Path
 
 import numpy as np
@@ -128,6 +129,19 @@ def test_the_command_prints_figures_and_writes_the_file(recording: Path, tmp_pat
     shown = CliRunner().invoke(app, ["record", "identify", str(recording)])
     assert "not seen enough" in shown.stdout
     assert "blue 1" in shown.stdout
+
+
+def test_the_commands_of_the_page_work(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    page = Path(__file__).parents[2] / "docs" / "identify.md"
+    block = page.read_text(encoding="utf-8").split("```sh\n")[1].split("```")[0]
+    commands = block.replace("time_limit=60", "time_limit=4").splitlines()
+    assert len(commands) == 3
+    for command in commands:
+        program, *arguments = shlex.split(command)
+        assert program == "robobt"
+        done = CliRunner().invoke(app, arguments)
+        assert done.exit_code == 0, done.stderr
 
 
 def test_an_unknown_base_is_a_usage_error(recording: Path) -> None:
