@@ -131,6 +131,7 @@ def test_the_command_prints_figures_and_writes_the_file(recording: Path, tmp_pat
     assert "blue 1" in shown.stdout
 
 
+@pytest.mark.slow  # it identifies twelve robots
 def test_the_commands_of_the_page_work(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     page = Path(__file__).parents[2] / "docs" / "identify.md"
