@@ -128,7 +128,8 @@ def kick(
     """Send the ball along the heading; its spin is lost.
 
     Of its sideways velocity, seen by the robot's front, it keeps the share ``limits.touch_kept``. The kick
-    adds the share ``limits.touch_returned`` of the speed at which it comes.
+    adds the share ``limits.touch_returned`` of the speed at which it comes, or ``limits.carried`` of the
+    speed at which it moves ahead with the robot; what is carried may exceed the kicker's own limit.
 
     Args:
         body: of the ball.
@@ -152,7 +153,11 @@ def kick(
     c, s = cos(robot.heading), sin(robot.heading)
     forward = c * ball.vx + s * ball.vy
     sideways = c * ball.vy - s * ball.vx
-    forward = speed - limits.touch_returned * forward
+    if forward > 0.0:
+        most += max(0.0, limits.carried * forward)
+        forward = speed + limits.carried * forward
+    else:
+        forward = speed - limits.touch_returned * forward
     front = c * robot.vy - s * robot.vx + robot.omega * (c * (body.x - robot.x) + s * (body.y - robot.y))
     sideways -= (1.0 - limits.touch_kept) * (sideways - front)
     fast = hypot(forward, sideways)

@@ -180,6 +180,9 @@ PRESETS: dict[str, SimSettings] = {
             catch_speed=0.5,
             hold_acceleration=0.35,
             reaction=0.02,
+            touch_kept=0.87,
+            touch_returned=0.17,
+            kick_carried=0.9,
         ),
         dribbler=DribblerSettings(kind="roller"),
         kicker=KickerSettings(max_chip_speed=5.425),  # which first touches down after 3 m

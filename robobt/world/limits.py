@@ -73,6 +73,18 @@ class RobotLimits(Settings):
     touch_returned: float = Field(
         0.0, ge=0, le=1, description="share of the speed of a ball that comes at the robot which a kick adds"
     )
+    kick_carried: float | None = Field(
+        None,
+        ge=-1,
+        le=1,
+        description="share of the forward speed of a ball that moves with the robot which a kick adds; "
+        "by default it loses the share touch_returned",
+    )
+
+    @property
+    def carried(self) -> float:
+        """Share of the forward speed of a ball that moves with the robot which a kick adds."""
+        return -self.touch_returned if self.kick_carried is None else self.kick_carried
 
     @property
     def lateral_acceleration(self) -> float:

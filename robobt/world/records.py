@@ -71,6 +71,7 @@ class Limits(Protocol):
     cross_aside: float
     touch_kept: float
     touch_returned: float
+    carried: float
 
 
 class Mover(Protocol):

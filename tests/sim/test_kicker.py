@@ -122,6 +122,24 @@ def test_a_kick_on_contact_fires_before_the_ball_bounces(
     assert seen.vy == pytest.approx(limits.touch_kept * ball[3], abs=0.12 + 0.1 * abs(ball[3]))
 
 
+@pytest.mark.parametrize(("carried", "faster"), [(None, -0.2), (0.0, 0.0), (0.9, 0.9)])
+def test_a_kick_adds_to_the_speed_of_a_ball_that_moves_ahead(carried: float | None, faster: float) -> None:
+    limits = {"touch_returned": 0.2, "kick_carried": carried}
+    world = holding(settings_from({"limits": limits}))
+    for _ in range(60):
+        world.act({ME: RobotCommand(vx=1.0, dribbler=True)})
+    world.act({ME: RobotCommand(vx=1.0, kick_speed=4.0)})
+    assert world.truth().ball.vx == pytest.approx(4.0 + faster, abs=0.15)
+
+
+def test_a_carried_ball_may_leave_faster_than_the_kicker_alone_would_send_it() -> None:
+    world = holding(settings_from({"limits": {"kick_carried": 1.0}, "kicker": {"max_speed": 4.0}}))
+    for _ in range(60):
+        world.act({ME: RobotCommand(vx=1.0, dribbler=True)})
+    world.act({ME: RobotCommand(vx=1.0, kick_speed=6.0)})
+    assert world.truth().ball.vx == pytest.approx(5.0, abs=0.15)
+
+
 def test_a_kicker_fires_again_only_when_it_is_charged_but_dribbles_before() -> None:
     world = holding(settings_from({"kicker": {"charge": 0.5, "recharge": 0.1}}))
     fired: list[float] = []

@@ -257,10 +257,9 @@ class KickToTarget(DrivingSkill):
         touched = me.ball_contact and not self.frame.game.in_play
         if off > order.tolerance and not touched:
             return False
-        # A ball that rolls towards the robot leaves faster than the kick alone, if the kicker allows it.
-        self.store.command.kick_speed = max(
-            _LEAST_KICK, order.speed + me.limits.touch_returned * min(ahead, 0.0)
-        )
+        # A ball that rolls towards the robot, or moves ahead with it, may leave faster than the kick alone.
+        added = me.limits.touch_returned * max(-ahead, 0.0) + max(0.0, me.limits.carried * max(ahead, 0.0))
+        self.store.command.kick_speed = max(_LEAST_KICK, order.speed - added)
         self.store.command.kick_angle = order.angle
         self.store.command.kick_trigger = KickTrigger.ON_CONTACT
         if has_ball(me, ball):

@@ -100,7 +100,7 @@ class GeometricShot(Settings):
     """Turn to the aim as fast as the dribbler holds the ball, and kick once the ball would leave towards it.
 
     The ball leaves along the heading and keeps its sideways velocity. The kick's speed is the rules' 6.5 m/s
-    minus what sideways motion may add.
+    minus what sideways motion may add, and minus what the kick adds to a ball that moves ahead.
     """
 
     kick_speed: float = Field(6.4, gt=0, le=20, description="speed of the shot [m/s]")
@@ -115,7 +115,8 @@ class GeometricShot(Settings):
         decided = turn_with_ball(me, heading, dribbling_limits(max_turn=self.max_turn), frame.period)
         sideways = sideways_after_kick(me, ball)
         if abs(wrap_angle(heading - me.heading - atan2(sideways, self.kick_speed))) <= tolerance:
-            decided.kick_speed = self.kick_speed
+            ahead = cos(me.heading) * ball.vx + sin(me.heading) * ball.vy
+            decided.kick_speed = self.kick_speed - max(0.0, me.limits.carried * max(ahead, 0.0))
             decided.kick_trigger = KickTrigger.NOW
         return decided
 

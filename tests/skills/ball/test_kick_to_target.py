@@ -77,6 +77,14 @@ def test_a_ball_that_comes_is_kicked_softer_by_what_the_kicker_returns_of_its_sp
         assert alone.command.kick_speed == pytest.approx(speed)
 
 
+def test_a_ball_that_moves_ahead_is_kicked_softer_by_what_the_kick_adds() -> None:
+    me = robot(contact=True, limits=RobotLimits(kick_carried=0.9))
+    for vx, speed in ((-1.0, 3.5), (0.0, 3.5), (1.0, 2.6)):
+        alone = Alone(KickToTarget(target=GOAL, kick_speed=3.5))
+        alone.tick(frame(me, ball=(*held(me), vx, 0.0)))
+        assert alone.command.kick_speed == pytest.approx(speed)
+
+
 def test_a_wide_shot_is_taken_sooner_than_a_narrow_one() -> None:
     me = robot(heading=radians(1.5), contact=True)
     wide, narrow = Alone(KickToTarget()), Alone(KickToTarget())

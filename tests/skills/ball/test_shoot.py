@@ -21,6 +21,7 @@ from robobt.testing import (
 from robobt.testing.frames import HELD
 from robobt.tree import Status
 from robobt.world import KickTrigger, RobotCommand, Team
+from robobt.world.limits import RobotLimits
 from tests.models.made_models import Aimed, Faulty, shoot_card, write_model
 from tests.skills.fixed_world import Alone, shot_at
 
@@ -120,6 +121,13 @@ def test_the_hand_written_policy_allows_for_the_balls_sideways_velocity() -> Non
     me = robot(3.0, 0.0, 0.0, contact=True)
     alone.tick(frame(me, ball=(*held(me), 0.0, 3.0)))
     assert alone.command.kick_speed == 0.0
+
+
+def test_the_hand_written_policy_kicks_softer_by_what_the_kick_adds_to_a_ball_that_moves_ahead() -> None:
+    alone = Alone(Shoot())
+    me = robot(3.0, 0.0, 0.0, contact=True, limits=RobotLimits(kick_carried=0.9))
+    alone.tick(frame(me, ball=(*held(me), 1.0, 0.0)))
+    assert alone.command.kick_speed == pytest.approx(shoot.GeometricShot().kick_speed - 0.9)
 
 
 def test_what_is_no_action_fails_the_leaf_and_stops_the_robot(tmp_path: Path) -> None:
