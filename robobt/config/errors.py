@@ -6,13 +6,24 @@ from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from difflib import get_close_matches
 from pathlib import Path
-from typing import Any, Self
+from typing import Any
 
 from robobt.config.renamed import RENAMED
 
 
 class RobobtError(Exception):
     """Base class of every error that robobt raises on purpose; the message is one readable line."""
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        # An exception is otherwise made again from its message alone, which those with fields refuse: what a
+        # worker process raised would arrive as a TypeError.
+        return (_made_again, (type(self), self.args, self.__dict__))
+
+
+def _made_again(kind: type[RobobtError], args: tuple[object, ...], fields: dict[str, object]) -> RobobtError:
+    made = kind.__new__(kind, *args)
+    made.__dict__.update(fields)
+    return made
 
 
 class ConfigError(RobobtError, ValueError):
@@ -31,9 +42,6 @@ class ConfigError(RobobtError, ValueError):
         self.file, self.problem, self.field, self.line = file, one_line(problem), field, line
         where = file if line is None else f"{file}:{line}"
         super().__init__(": ".join([one_line(part) for part in (where, field, self.problem) if part]))
-
-    def __reduce__(self) -> tuple[type[Self], tuple[str, str, str, int | None]]:
-        return (type(self), (self.file, self.problem, self.field, self.line))
 
 
 class FieldError(RobobtError, ValueError):

@@ -6,7 +6,7 @@ import types
 import typing
 from collections.abc import Collection, Iterator, Mapping
 from functools import lru_cache
-from typing import Any, Self
+from typing import Any
 
 from py_trees.behaviour import Behaviour
 
@@ -26,9 +26,6 @@ class WiringError(RobobtError, ValueError):
     def __init__(self, problems: list[str]) -> None:
         super().__init__("; ".join(problems))
         self.problems = tuple(problems)
-
-    def __reduce__(self) -> tuple[type[Self], tuple[list[str]]]:
-        return (type(self), (list(self.problems),))
 
 
 def check_tree(root: Behaviour, store: type, given: Collection[str] = ()) -> None:

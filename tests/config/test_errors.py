@@ -8,8 +8,14 @@ from pathlib import Path
 import pytest
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
-from robobt.config.errors import ConfigError, RobobtError, naming, one_line, short_repr
+from robobt.config.errors import ConfigError, FieldError, RobobtError, naming, one_line, short_repr
+from robobt.config.extras import MissingExtraError
 from robobt.config.validation import first_problem
+from robobt.league.programs.program import ForfeitError
+from robobt.match.recording.header import RecordingError
+from robobt.tournament.store import StoreError
+from robobt.tree.parameters import ParameterError
+from robobt.world import Team as FieldTeam
 
 
 class OwnError(ConfigError):
@@ -31,6 +37,23 @@ def test_the_message_names_what_is_known(error: OwnError, message: str) -> None:
     assert isinstance(error, RobobtError)
     copy = pickle.loads(pickle.dumps(error))
     assert (type(copy), copy.args, copy.__dict__) == (OwnError, error.args, error.__dict__)
+
+
+@pytest.mark.parametrize(
+    "error",
+    [
+        RecordingError(Path("match.arrows"), "is cut off", 7, "ball"),
+        ForfeitError(FieldTeam.YELLOW, "its program ended"),
+        MissingExtraError("pymunk", "sim"),
+        FieldError("0.number", "is taken"),
+        StoreError(Path("results"), "holds other entrants", "entrants"),
+        ParameterError("policy", "there is no such policy"),
+    ],
+    ids=lambda error: type(error).__name__,
+)
+def test_an_error_that_a_worker_raised_arrives_as_it_was(error: RobobtError) -> None:
+    copy = pickle.loads(pickle.dumps(error))
+    assert (type(copy), str(copy), copy.__dict__) == (type(error), str(error), error.__dict__)
 
 
 def test_a_message_is_one_printable_line_of_bounded_length() -> None:
