@@ -30,6 +30,8 @@ TRIALS = ("1", "2")
 
 COMBINATIONS: dict[str, dict[str, str | None] | None] = {
     "robobulls": None,
+    "script, script": {"policy": "script", "shoot": "script", "pickup_speed": None},
+    "geometric, script": {"policy": "geometric", "shoot": "script", "pickup_speed": None},
     "geometric, kick": {"policy": "geometric", "shoot": "kick_to_target"},
     "geometric, kick, quick": {"policy": "geometric", "shoot": "kick_to_target", "pickup_speed": None},
     "geometric, shoot": {"policy": "geometric", "shoot": "geometric"},

@@ -10,6 +10,7 @@ from typing import NamedTuple
 
 from pydantic import ConfigDict
 
+import paper.scripts  # noqa: F401  It registers the policies named script, in workers too.
 from paper.table4_starts import SHOOTER, gap, minimum_times
 from robobt import RobobtError
 from robobt.engines import Work, run_tasks

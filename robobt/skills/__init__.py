@@ -25,7 +25,9 @@ from robobt.skills.ball.dribble_to import DribbleTo as DribbleTo
 from robobt.skills.ball.duel import Duel as Duel
 from robobt.skills.ball.face_ball import FaceBall as FaceBall
 from robobt.skills.ball.fetch_ball import FetchBall as FetchBall
+from robobt.skills.ball.go_to_ball import GO_TO_BALL_POLICIES as GO_TO_BALL_POLICIES
 from robobt.skills.ball.go_to_ball import HANDOVER_DISTANCE as HANDOVER_DISTANCE
+from robobt.skills.ball.go_to_ball import Approach as Approach
 from robobt.skills.ball.go_to_ball import GoToBall as GoToBall
 from robobt.skills.ball.intercept import Intercept as Intercept
 from robobt.skills.ball.kick_loose import KickLoose as KickLoose
@@ -35,6 +37,7 @@ from robobt.skills.ball.let_go import LetGo as LetGo
 from robobt.skills.ball.pick_up_ball import PickUpBall as PickUpBall
 from robobt.skills.ball.score import Score as Score
 from robobt.skills.ball.settle_ball import SettleBall as SettleBall
+from robobt.skills.ball.shoot import SHOOT_POLICIES as SHOOT_POLICIES
 from robobt.skills.ball.shoot import Shoot as Shoot
 from robobt.skills.base import SKILLS as SKILLS
 from robobt.skills.base import Condition as Condition
