@@ -145,8 +145,12 @@ class LeagueWorld(World, Closing):
         self._watch.begin()
 
     def observe(self) -> Frame:
-        """Return the field predicted to now, and on by the robots' dead time, seen from blue's side."""
-        return self._frame(self._looked_at, to_effect=True)
+        """Return the field predicted to when a command sent now moves the robots, seen from blue's side.
+
+        That is after the commands' delay and each robot's dead time, as in
+        :class:`~robobt.world.prediction.PredictedWorld`.
+        """
+        return self._frame(self._looked_at + self.settings.realism.command_delay, to_effect=True)
 
     def truth(self) -> Frame:
         """Return the field at the last capture, without prediction, seen from blue's side."""
@@ -288,6 +292,7 @@ class LeagueWorld(World, Closing):
             commands = {robot: RobotCommand() for robot in commands}
         commands = self._feed.picture.checked(commands, now)
         self._link.send(commands, now)
+        # The age of the vision is not in it, and dead times the filter adds.
         effect = self.settings.realism.command_delay + self.settings.limits.reaction
         self._feed.filter.sent(self._feed.vision_now() + effect, commands)
         self.send_times.append(self._clock())

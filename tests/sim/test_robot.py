@@ -21,7 +21,7 @@ def test_a_preset_speeds_up_and_brakes_as_measured(name: str) -> None:
     forward, sideways, brake = MEASURED[name]
     for command, expected in ((RobotCommand(vx=1.5), forward), (RobotCommand(vy=1.5), sideways)):
         world = one_robot(name)
-        late = 0.047 if name == "erforce" else 0.0
+        late = 0.005 if name == "erforce" else 0.0
         while world.truth().own[0].speed < 1.35:
             world.act({ME: command})
         assert world.time - late == pytest.approx(expected, rel=0.10)
