@@ -42,6 +42,9 @@ _MIN_ROBOT_NOISE, _MIN_BALL_NOISE, _MIN_HEADING_NOISE = 0.0013, 0.0014, 0.01
 DETECTIONS, COVARIANCE = "detections", "covariance"
 """Drawing layers of the cameras' detections and of the filter's uncertainty."""
 
+_UNSEEN = 0.05
+"""Time from which a ball that no camera detects counts as hidden, and not as missed by chance [s]."""
+
 _RADIUS_95 = 2.448
 """Radius of the circle that holds 95 % of a normal distribution of two dimensions, in standard deviations."""
 
@@ -121,6 +124,7 @@ class VisionFilter:
         self._seen: dict[int, CameraFrame] = {}
         self._robots: dict[RobotId, RobotTrack] = {}
         self._ball: BallTrack | None = None
+        self._moved_unseen = -inf
         self._sensing = RobotSensing(*self._robot_noises)
         # One mean for balls and robots keeps a ball beside its robot where different cameras see the two.
         self._offsets = self._sensing.offsets
@@ -186,6 +190,8 @@ class VisionFilter:
         balls = [ball for ball in frame.balls if ball.confidence >= _MIN_CONFIDENCE]
         if balls:
             self._add_balls(balls, time, frame.camera)
+        if self._ball is not None and time - self._ball_seen > _UNSEEN and time > self._ball.time:
+            self._follow_unseen(self._ball, time)
         return True
 
     def robots(self) -> list[RobotId]:
@@ -358,6 +364,19 @@ class VisionFilter:
             track.teach()
         rivals.saw_track(camera, own.confidence, time)
         return own
+
+    def _follow_unseen(self, track: BallTrack, time: float) -> None:
+        """Let a ball that cameras no longer see go where sensors and hulls say that it must be."""
+        if self._flights.at(time) is not None:
+            return
+        motions = {robot: self._robot_at(robot, time) for robot in self._robots}
+        predicted = self._ball_at(time, motions)
+        ball = self.possession.update_unseen(predicted, motions)
+        if ball is not None:
+            self._moved_unseen = time
+        # From where it was moved to before, the robots may have gone on over that place.
+        if self._moved_unseen > self._ball_seen:
+            track.carry(ball or predicted, time)
 
     def _look_up(
         self,

@@ -30,6 +30,12 @@ _PUSH_GAP = 0.05
 _FEEDBACK_REACH = 0.05
 """A robot's break-beam sensor is trusted while the ball is seen this close to its mouth [m]."""
 
+_HIDDEN_REACH = 0.3
+"""A robot whose sensor reports a ball that no camera sees has it, if it may be so far from the mouth [m]."""
+
+_OVERLAP = 0.01
+"""A ball that no camera sees is not believed this deep in a hull: a robot has pushed it on [m]."""
+
 
 @dataclass(slots=True)
 class CarriedBall:
@@ -93,6 +99,43 @@ class Possession:
             for part in zip(*((ball.x, ball.y, ball.vx, ball.vy) for ball in balls), strict=True)
         )
         return BallMotion(x, y, vx, vy)
+
+    def update_unseen(self, ball: BallMotion, motions: Mapping[RobotId, RobotMotion]) -> BallMotion | None:
+        """Update possession of a ball that no camera has seen for some time, by sensors and hulls.
+
+        A robot often hides the ball that it takes, and goes on over the place where the ball was seen last.
+
+        Args:
+            ball: as it is predicted.
+            motions: the robots at that time.
+
+        Returns:
+            The ball as it has to be: in the mouth of the robot whose sensor reports it, or pushed out of a
+            hull; None where neither says more than the prediction.
+        """
+        self.holds = [hold for hold in self.holds if self.feedback.get(hold.robot) is not False]
+        if self.holds:
+            return None
+        depth = self._body.face + BALL_RADIUS
+        nearest, taker = _HIDDEN_REACH, None
+        for robot, m in motions.items():
+            ahead, aside = to_robot_frame(ball.x - m.x, ball.y - m.y, m.heading)
+            away = hypot(ahead - depth, aside)
+            if self.feedback.get(robot) and away < nearest:
+                nearest, taker = away, CarriedBall(robot, depth, 0.0)
+        if taker is not None:
+            self.holds, self.last_touch = [taker], taker.robot
+            return taker.ball(motions[taker.robot])
+        for robot, m in motions.items():
+            ahead, aside = to_robot_frame(ball.x - m.x, ball.y - m.y, m.heading)
+            before = ahead > 0.0 and abs(aside) < self._body.mouth_width / 2
+            gap = ahead - depth if before else hypot(ahead, aside) - ROBOT_RADIUS - BALL_RADIUS
+            if gap > -_OVERLAP:
+                continue
+            out = 1.0 - gap / max(hypot(ahead, aside), BALL_RADIUS)
+            pushed = (depth, aside) if before else (out * ahead, out * aside)
+            return CarriedBall(robot, *pushed).ball(m)
+        return None
 
     def has_ball(self, robot: RobotId, m: RobotMotion, ball: BallMotion) -> bool:
         """Return whether a robot has the ball, by its sensor where that is plausible."""

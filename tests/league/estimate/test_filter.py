@@ -320,6 +320,33 @@ def test_a_hidden_ball_stays_with_one_of_two_that_part(watched: Watched, reporte
     assert frame.ball.x == pytest.approx(her.x - mouth if reported == HER else 0.0, abs=0.02)
 
 
+def test_a_hidden_ball_is_in_the_mouth_whose_sensor_reports_it(watched: Watched) -> None:
+    mouth = REALISTIC.body.face + 0.0215
+    watched.see_for(0.3, lambda _: (-0.4, 0.0, 0.0), lambda _: (0.0, 0.0))
+    # It drives on to the ball, which it hides, and pushes it on.
+    watched.see_for(0.5, lambda t: (-0.4 + 0.8 * t, 0.0, 0.0))
+    watched.filter.possession.feedback[ME] = True
+    watched.see_for(0.3, lambda t: (0.8 * t, 0.0, 0.0))
+    frame = watched.frame()
+    assert frame.own[0].ball_contact
+    assert frame.ball.x - frame.own[0].x == pytest.approx(mouth, abs=0.01)
+    assert frame.ball.vx == pytest.approx(0.8, abs=0.05)
+    # It loses it there, and backs away.
+    watched.filter.possession.feedback[ME] = False
+    watched.see_for(0.3, lambda t: (0.24 - 0.5 * t, 0.0, 0.0))
+    frame = watched.frame()
+    assert not frame.own[0].ball_contact
+    assert frame.ball.x > 0.24 + mouth - 0.02
+
+
+def test_no_robot_stands_on_a_hidden_ball(watched: Watched) -> None:
+    watched.see_for(0.3, lambda _: (-0.4, 0.02, 0.0), lambda _: (0.0, 0.0))
+    watched.see_for(0.8, lambda t: (-0.4 + 0.8 * t, 0.02, 0.0))
+    frame = watched.frame()
+    ahead = frame.ball.x - frame.own[0].x
+    assert ahead >= REALISTIC.body.face + 0.0215 - 0.011
+
+
 def test_a_hidden_ball_that_nobody_has_rolls_on_to_rest(watched: Watched) -> None:
     watched.see_for(0.5, ball=lambda t: (0.4 * t, 0.0))
     for _ in range(120):
