@@ -8,6 +8,7 @@ from math import cos, hypot, inf
 from robobt.motion.dribbling import MAX_ACCELERATION, MAX_TURN, dribbling_limits
 from robobt.motion.path_planner import next_waypoint
 from robobt.motion.pilot import approach_speed, command, turn_rate
+from robobt.skills.ball.pick_up_ball import grab
 from robobt.skills.base import Skill, skill
 from robobt.tree import Status
 from robobt.world.compiled import compilable
@@ -17,6 +18,8 @@ from robobt.world.rules import has_ball
 
 _GRACE = 0.15
 """The ball counts as lost once it has been out of the mouth for this long [s]."""
+_SLIPPED = 0.1
+"""A ball that has been out of the mouth for this long, but lies before it, is taken again [s]."""
 _RULE_MARGIN = 0.1
 """Distance before the dribbling limit at which the skill gives up, so that the ball is released in time
 [m]."""
@@ -65,6 +68,7 @@ class DribbleTo(Skill):
     keep: float = 0.0
     _taken_at: Point | None = field(default=None, init=False)
     _last_held: float = field(default=0.0, init=False)
+    _last_contact: float = field(default=0.0, init=False)
     _course: Course = field(default_factory=Course, init=False)
 
     def __post_init__(self) -> None:
@@ -76,7 +80,7 @@ class DribbleTo(Skill):
     def on_start(self) -> None:
         """Take the ball's current position as the start of the carry."""
         self._taken_at = None
-        self._last_held = self.frame.time
+        self._last_held = self._last_contact = self.frame.time
         self._course.since = -inf
 
     def on_running(self) -> Status:
@@ -104,6 +108,11 @@ class DribbleTo(Skill):
 
     def _carry(self, target: Point) -> None:
         frame, me, limits = self.frame, self.me, self._limits
+        if me.ball_contact:
+            self._last_contact = frame.time
+        elif frame.time - self._last_contact >= _SLIPPED:
+            self.store.command = grab(me, self.ball, me.limits.catch_speed, frame.period)
+            return
         point, speed_there = next_waypoint(frame, me, target)
         heading = steady(self._course, frame.time, direction(me.position, point), self.keep)
         pace = limits.max_speed, limits.acceleration

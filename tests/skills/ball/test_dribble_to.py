@@ -96,6 +96,19 @@ def test_a_ball_gone_for_a_moment_is_not_yet_lost() -> None:
     assert alone.tick(frame(me, ball=(0.2, 0.0), time=0.2)) is Status.FAILURE
 
 
+def test_a_ball_that_slipped_from_the_mouth_is_taken_again() -> None:
+    slipped = (MOUTH + 0.012, 0.004)
+    dribble = Alone(DribbleTo(target=(-2.0, 0.0)))
+    for step in range(20):
+        assert dribble.tick(frame(robot(), ball=slipped, time=step / 60)) is Status.RUNNING
+    assert dribble.command.vx > 0.0
+    assert dribble.command.dribbler
+    # It then turns with the ball, which otherwise stays behind.
+    alone(DribbleTo(target=(-2.0, 0.0)), (0.0, 0.0, 0.0), slipped).run(
+        6.0, eventually("the ball is there", ball_near((-2.0, 0.0), 0.3))
+    )
+
+
 def test_it_carries_no_farther_than_allowed() -> None:
     alone = Alone(DribbleTo(target=(3.0, 0.0), max_distance=1.0))
     for x, expected in ((0.0, Status.RUNNING), (0.85, Status.RUNNING), (0.95, Status.FAILURE)):
