@@ -106,9 +106,7 @@ class Arenas:
         self.touch: IntArray = self._arrays.touch
         self.history: FloatArray = self._arrays.history
         self._arrays.bodies[:, :count, :2] = np.array(until_placed(count)).reshape(count, 2)
-        delay = settings.realism.command_delay
-        if settings.wheels is None:  # which react late anyway
-            delay += settings.limits.reaction
+        delay = settings.command_to_effect
         # Commands in force before a robot's switch, those after it, and those still on their way.
         self._old, self._new = (np.zeros((n, count, size(COMMAND))) for _ in range(2))
         self._waiting = np.zeros((1, n, count, size(COMMAND)))
@@ -174,6 +172,19 @@ class Arenas:
     def _forget_commands(self, arenas: IntArray) -> None:
         self._old[arenas] = self._new[arenas] = 0.0
         self._waiting[:, arenas] = 0.0
+
+    def follow_before(self, arenas: IntArray, commands: FloatArray) -> None:
+        """Let robots that were just placed follow these commands until the next ones reach them.
+
+        Args:
+            arenas: indices of the m arenas.
+            commands: (m, R, 7), see :meth:`step`.
+        """
+        self._old[arenas] = self._new[arenas] = commands
+        self._waiting[:, arenas] = commands
+        given, followed = commands.view(COMMAND)[..., 0], self._arrays.kept.view(KEPT)["followed"]
+        for axis in ("vx", "vy", "omega"):
+            followed[axis][arenas, :, 0] = given[axis]
 
     def place(self, robots: ArrayLike, balls: ArrayLike, arenas: ArrayLike | None = None) -> None:
         """Reset arenas: set positions and velocities, and drop commands on their way.

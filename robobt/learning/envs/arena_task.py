@@ -18,7 +18,14 @@ from robobt.learning.envs.perception import Perception
 from robobt.learning.envs.progress import PROGRESS, progress_at
 from robobt.learning.envs.randomiser import Randomiser
 from robobt.learning.envs.settings import MemorySettings, TaskSettings
-from robobt.learning.envs.starts import START_COLUMNS, StartPool, check_starts, columns_of, split
+from robobt.learning.envs.starts import (
+    START_COLUMNS,
+    StartPool,
+    check_starts,
+    columns_of,
+    commands_before,
+    split,
+)
 from robobt.learning.envs.task import BoolArray, EpisodeEnds, FloatArray, IntArray, StepResult
 from robobt.learning.envs.tick import Tick, call, checked_starts, checked_terms, end_by, error_of
 from robobt.models.actions import fill_commands
@@ -493,6 +500,10 @@ class ArenaTask:
         self._randomiser.draw(which)
         robots, balls, _ = split(rows, self.robots)
         self.arenas.place(robots, balls, which)
+        before = commands_before(
+            robots, self.arenas.robot_parameters[which], self.learners, self.action.dribbler
+        )
+        self.arenas.follow_before(which, before)
         call(self, "begin", rows, which)
         self._progress[which] = progress_at(balls)
         self._terms[which] = np.zeros(len(which), dtype=self._terms.dtype)

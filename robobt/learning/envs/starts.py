@@ -8,7 +8,7 @@ import numpy as np
 
 from robobt.learning.envs.settings import Span
 from robobt.learning.envs.task import FloatArray, IntArray
-from robobt.sim.records import RecordArray, size
+from robobt.sim.records import COMMAND, RecordArray, size
 from robobt.world.field import FieldGeometry
 from robobt.world.records import BALL, ROBOT, ROBOT_SIZE
 
@@ -81,6 +81,32 @@ def velocities(rng: np.random.Generator, speed: Span, count: int) -> tuple[Float
     """Draw ``count`` velocities in any direction, along x and y, with a speed in the range [m/s]."""
     fast, towards = rng.uniform(*speed, count), rng.uniform(-np.pi, np.pi, count)
     return fast * np.cos(towards), fast * np.sin(towards)
+
+
+def commands_before(
+    robots: FloatArray, limits: RecordArray, learners: Sequence[int], dribbler: bool
+) -> FloatArray:
+    """Return the commands (m, R, 7) by which learners move as they do at a start; the other robots have none.
+
+    Args:
+        robots: (m, R, 6) states at the start, in field coordinates.
+        limits: (m, R) of the robots, for their gains.
+        learners: indices of the robots that learn.
+        dribbler: whether their dribblers are on.
+    """
+    commands = np.zeros((*robots.shape[:2], size(COMMAND)))
+    given, now = commands.view(COMMAND)[..., 0], robots.view(ROBOT)[..., 0]
+    for index in learners:
+        command, state, own = given[:, index], now[:, index], limits[:, index]
+        c, s = np.cos(state["heading"]), np.sin(state["heading"])
+        ahead, aside = c * state["vx"] + s * state["vy"], c * state["vy"] - s * state["vx"]
+        # See RobotLimits.command_for.
+        whole = own["gain"] * own["side_gain"] - own["cross_ahead"] * own["cross_aside"]
+        command["vx"] = (own["side_gain"] * ahead - own["cross_ahead"] * aside) / whole
+        command["vy"] = (own["gain"] * aside - own["cross_aside"] * ahead) / whole
+        command["omega"] = state["omega"] / own["turn_gain"]
+        command["dribbler"] = float(dribbler)
+    return commands
 
 
 class StartPool:

@@ -205,3 +205,26 @@ def test_a_new_episode_does_not_obey_the_old_ones_commands() -> None:
     for _ in range(6):
         made.step(np.zeros((1, 3)))
         assert (made.arenas.robots[0, 0, 3:] == 0.0).all()
+
+
+@pytest.mark.parametrize("answer", [{}, {"lag": (0.05, 0.05), "gain": (0.8, 0.8)}])
+def test_a_late_robot_moves_on_until_its_first_command_arrives(answer: dict[str, Any]) -> None:
+    made = task(1, randomisation={"control_delay": (0.09, 0.09), **answer})
+    made.reset_to([[0.0, 0, 0.4, 1.5, 0.5, 0.0, 2.0, 0, 0, 0]])
+    for _ in range(3):
+        made.step(np.zeros((1, 3)))
+        np.testing.assert_allclose(made.arenas.robots[0, 0, 3:], (1.5, 0.5, 0.0), atol=1e-9)
+    made.step(np.zeros((1, 3)))
+    assert made.arenas.robots[0, 0, 3] < 1.5
+
+
+def test_what_a_robot_did_before_its_start_changes_nothing_without_delay() -> None:
+    moving = [[0.0, 0, 0.4, 1.5, 0.5, 1.0, 2.0, 0, 0, 0]]
+    made = task(1)
+    made.reset_to(moving)
+    made.step(np.zeros((1, 3)))
+    bare = task(1)
+    bare.reset_to(moving)
+    bare.arenas.follow_before(np.array([0]), np.zeros((1, 1, 7)))
+    bare.step(np.zeros((1, 3)))
+    np.testing.assert_array_equal(made.arenas.robots, bare.arenas.robots)
