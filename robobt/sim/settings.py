@@ -75,6 +75,11 @@ class SimSettings(Settings):
     realism: RealismSettings = RealismSettings()
     sub_step: float = Field(0.005, gt=0.0005, le=0.01, description="longest physics step [s]")
 
+    @property
+    def command_to_effect(self) -> float:
+        """Time from a command to its effect, without a robot's dead time [s]; wheels react late anyway."""
+        return self.realism.command_delay + (self.limits.reaction if self.wheels is None else 0.0)
+
 
 _GRSIM_BALL = BallSettings(
     mass=0.043,

@@ -13,6 +13,10 @@ from robobt.world.team_view import BALL_INDEX
 AIM_GAIN = 6.0
 """Turning rate for each radian off the aim [1/s]."""
 
+_GAIN_TIMES_DELAY = 0.3
+"""Turning rate for each radian, times the delay, at which a late robot does not swing: 1 / e for a robot that
+then turns at once, less for one that takes a while."""
+
 _GENTLE_PULL = 1.5
 """Deceleration at which most dribblers still hold a ball [m/s^2]."""
 
@@ -45,6 +49,11 @@ _FREE_WAY_TIME = 1.5
 """Time for which a way has to be free [s]."""
 
 
+def steady_gain(delay: float) -> float:
+    """Return the turning rate for each radian off the aim [1/s] for robots that are late by ``delay`` [s]."""
+    return min(AIM_GAIN, _GAIN_TIMES_DELAY / delay) if delay > 0.0 else AIM_GAIN
+
+
 def straight_drive(observation: FloatArray) -> FloatArray:
     """Return the actions (n, 3) that drive at the ball at full speed: the fastest Go-To-Ball.
 
@@ -54,10 +63,10 @@ def straight_drive(observation: FloatArray) -> FloatArray:
     return np.column_stack((cos_ball, sin_ball, np.zeros(len(observation))))
 
 
-def drive_and_face(observation: FloatArray, max_turn: float) -> FloatArray:
+def drive_and_face(observation: FloatArray, max_turn: float, gain: float = AIM_GAIN) -> FloatArray:
     """Drive straight at the ball at full speed and turn to it, (n, 6) -> (n, 3)."""
     sin_ball, cos_ball, *_ = observation.T
-    turn = np.clip(AIM_GAIN / max_turn * np.arctan2(sin_ball, cos_ball), -1.0, 1.0)
+    turn = np.clip(gain / max_turn * np.arctan2(sin_ball, cos_ball), -1.0, 1.0)
     return np.column_stack((cos_ball, sin_ball, turn))
 
 
@@ -118,11 +127,15 @@ def drive_to_shoot(observation: FloatArray, max_turn: float) -> FloatArray:
 
 
 def turn_and_kick(
-    observation: FloatArray, scaling: ActionScaling = SHOOT_ACTION, pull: float = _GENTLE_PULL
+    observation: FloatArray,
+    scaling: ActionScaling = SHOOT_ACTION,
+    pull: float = _GENTLE_PULL,
+    gain: float = AIM_GAIN,
 ) -> FloatArray:
     """Turn to the middle of the goal and kick when the ball will leave well between the posts.
 
-    It maps (n, 10) to (n, 2); ``pull`` is the acceleration at which the dribbler holds the ball [m/s^2].
+    It maps (n, 10) to (n, 2); ``pull`` is the acceleration at which the dribbler holds the ball [m/s^2],
+    ``gain`` the turning rate for each radian off the aim [1/s].
     """
     ball_x, ball_y, _, sideways, _, _, sin_upper, cos_upper, sin_lower, cos_lower = observation.T
     upper = np.arctan2(sin_upper, cos_upper)
@@ -133,15 +146,18 @@ def turn_and_kick(
     off = np.arctan2(np.sin(middle - leaving), np.cos(middle - leaving))
     # Turning at rate w with the ball at distance L needs a pull of w^2 L.
     most = np.minimum(scaling.max_turn, np.sqrt(pull / np.hypot(ball_x, ball_y)))
-    omega = np.clip(AIM_GAIN * off, -most, most)
+    omega = np.clip(gain * off, -most, most)
     kick = np.where(np.abs(off) < _MOUTH_SHARE * half, 1.0, -1.0)
     return np.column_stack((omega / scaling.max_turn, kick))
 
 
-def drive_and_kick(observation: FloatArray, scaling: ActionScaling = SCORE_ACTION) -> FloatArray:
+def drive_and_kick(
+    observation: FloatArray, scaling: ActionScaling = SCORE_ACTION, gain: float = AIM_GAIN
+) -> FloatArray:
     """Get the ball, carry it towards the goal, and kick at the corner farther from the goalkeeper.
 
-    It maps (n, 19), :data:`robobt.world.scoring.SCORE_ON_GOALKEEPER`, to (n, 4).
+    It maps (n, 19), :data:`robobt.world.scoring.SCORE_ON_GOALKEEPER`, to (n, 4); ``gain`` is as for
+    :func:`turn_and_kick`.
     """
     ball, posts = observation[:, 3:5], observation[:, 9:13].reshape(-1, 2, 2)
     (ball_x, ball_y), (post_x, post_y) = ball.T, np.moveaxis(posts, -1, 0)
@@ -158,6 +174,6 @@ def drive_and_kick(observation: FloatArray, scaling: ActionScaling = SCORE_ACTIO
     way = np.where(has_it[:, None], posts.mean(axis=1), ball)
     drive = speed[:, None] * way / np.hypot(*way.T)[:, None]
     most = np.where(has_it, _CAREFUL_TURN / scaling.max_turn, 1.0)
-    omega = np.clip(AIM_GAIN / scaling.max_turn * turn, -most, most)
+    omega = np.clip(gain / scaling.max_turn * turn, -most, most)
     kick = np.where(has_it & near & (np.abs(turn) < _KICK_TOLERANCE), 1.0, -1.0)
     return np.column_stack((drive, omega, kick))

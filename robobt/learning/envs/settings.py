@@ -197,6 +197,12 @@ class TaskSettings(OrderedSettings):
         return self.simulator.limits if self.limits is None else self.limits
 
     @property
+    def longest_delay(self) -> float:
+        """Longest time from a command to its effect, without lag [s]."""
+        own = self.simulator.command_to_effect + self.robot_limits.dead_time
+        return own + self.randomisation.control_delay[1]
+
+    @property
     def stepped_simulator(self) -> SimSettings:
         """The simulator with the physics steps that ``sub_steps`` asks for."""
         return self.simulator.model_copy(update={"sub_step": self.period / self.sub_steps})

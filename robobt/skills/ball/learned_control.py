@@ -87,6 +87,7 @@ class LearnedControl:
 
     Attributes:
         card: the model's own description.
+        remembers: whether its observation has a memory.
         minds_kicker: whether it observes that its robot took a restart and may not touch the ball again yet.
 
     Raises:
@@ -113,6 +114,7 @@ class LearnedControl:
         self._observe: Callable[..., FloatArray] = observe
         places = places_of(name)
         self.minds_kicker = places is not None and places.told > 1
+        self.remembers = memory is not None
         self._memory_size, self._memory = memory, None if memory is None else _Recollection(memory)
         self._infer: Callable[[FloatArray], list[float]] | None = None
         self._scaling = self.card.action

@@ -76,6 +76,8 @@ class Shoot(Skill):
         """Forget the last shot."""
         self._kicked = False
         self._had_it = -inf
+        if isinstance(self._decide, LearnedShot):
+            self._decide.restart()
 
     def on_running(self) -> Status:
         """Turn, or kick, for one tick."""
@@ -130,6 +132,12 @@ class LearnedShot:
 
     def __init__(self, model: str) -> None:
         self._control = LearnedControl(model, skill="Shoot")
+        self._velocity: tuple[float, float] | None = None
+
+    def restart(self) -> None:
+        """Forget the last shot."""
+        self._control.forget()
+        self._velocity = None
 
     def __call__(self, store: Store) -> RobotCommand:
         """Compute the command of one tick."""
@@ -138,11 +146,17 @@ class LearnedShot:
         # Turning at rate w with the ball at distance L needs the acceleration w^2 L.
         fastest = sqrt(held / TOUCH_DISTANCE)
         decided.omega = min(fastest, max(-fastest, decided.omega))
-        speed = me.speed
+        vx, vy = me.vx, me.vy
+        if self._control.remembers and self._velocity is not None:
+            # A late robot's own speed would let it brake too slowly.
+            vx, vy = self._velocity
+        speed = hypot(vx, vy)
+        self._velocity = 0.0, 0.0
         if speed > held * store.frame.period:
             left = 1.0 - held * store.frame.period / speed
+            self._velocity = left * vx, left * vy
             c, s = left * cos(me.heading), left * sin(me.heading)
-            decided.vx, decided.vy = c * me.vx + s * me.vy, c * me.vy - s * me.vx
+            decided.vx, decided.vy = c * vx + s * vy, c * vy - s * vx
         return decided
 
 

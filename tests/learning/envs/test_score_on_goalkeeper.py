@@ -188,3 +188,10 @@ def _command(row: np.ndarray) -> Any:
 
     vx, vy, omega, *_, dribbler = row[:6].tolist()
     return RobotCommand(vx, vy, omega, dribbler=bool(dribbler))
+
+
+def test_its_script_scores() -> None:
+    made = ScoreOnGoalkeeperTask(n=64)
+    script = made.script()
+    assert script is not None
+    assert run_starts(made, script, made.sample_starts(2, 64)).success.mean() > 0.3

@@ -314,3 +314,43 @@ def test_a_gentle_robot_turns_no_faster_than_its_dribbler_holds_the_ball() -> No
         lost[gentle] = int((~task.arenas.contact[:, 0]).sum())
     # At 10 rad/s the default dribbler loses every ball, at the 5.6 rad/s that it bears it loses none.
     assert lost == {False: 16, True: 0}
+
+
+@pytest.mark.parametrize("delay", [0.0, 0.12])
+def test_a_gentle_robot_brakes_as_hard_as_its_dribbler_holds_the_ball_however_late(delay: float) -> None:
+    made = task(
+        [[0.5, 0.0, pi / 2, 0.0, 1.2, 0.0, 0.5, 0.097, 0.0, 1.2]],
+        gentle=True, randomisation={"control_delay": (delay, delay)},
+    )  # fmt: skip
+    held, period = made.settings.robot_limits.hold_acceleration, made.settings.period
+    for tick in range(1, 18):
+        made.step(np.array([HOLD]))
+        expected = max(1.2 - held * max(0.0, tick * period - delay), 0.0)
+        assert made.arenas.robots[0, 0, 4] == pytest.approx(expected, abs=1e-6)
+        assert made.arenas.contact[0, 0]
+
+
+def test_late_robots_start_where_they_can_still_stop() -> None:
+    settings = ShootSettings.model_validate(
+        {
+            "gentle": True,
+            "starts": {"robot_speed": (0.0, 3.0)},
+            "randomisation": {"control_delay": (0.0, 0.13), "lag": (0.0, 0.05)},
+        }
+    )
+    robots = ShootTask(settings, 1).sample_starts(5, 400)
+    speed = np.hypot(robots[:, 3], robots[:, 4])
+    way = 0.18 + speed / (2.0 * settings.robot_limits.hold_acceleration)
+    assert (np.abs(robots[:, 1] + way * robots[:, 4]) <= 2.9).all()
+    assert (robots[:, 0] + way * robots[:, 3] <= 3.2).all()
+    assert speed.max() > 2.0
+
+
+@pytest.mark.parametrize("delay", [0.0, 0.06, 0.1, 0.13])
+def test_the_script_that_knows_the_delay_scores(delay: float) -> None:
+    settings = ShootSettings.model_validate(
+        {"simulator": "rsim", "randomisation": {"control_delay": (delay, delay)}}
+    )
+    made = ShootTask(settings, 64)
+    episodes = run_starts(made, made.script(), made.sample_starts(3, 64))
+    assert episodes.success.mean() >= 0.9

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from math import hypot
 from pathlib import Path
 
 import numpy as np
@@ -14,8 +15,12 @@ from robobt.learning.envs.shoot.settings import ShootSettings
 from robobt.models.card import ObservationCard
 from robobt.models.policy import load_policy
 from robobt.skills.ball.learned_control import LearnedControl
+from robobt.skills.ball.shoot import Shoot
+from robobt.testing import frame, held, robot
+from robobt.tree import Status
 from robobt.world import DIVISION_B, BallState, Frame, RobotState
-from tests.models.made_models import shoot_card, write_model
+from tests.models.made_models import Aimed, shoot_card, write_model
+from tests.skills.fixed_world import Alone
 
 SETTINGS = ShootSettings.model_validate({"memory": {"actions": 3, "observations": 2}})
 
@@ -76,3 +81,20 @@ def test_after_a_pause_it_has_forgotten(model: Path) -> None:
         used.decide(*frame_of([0.1 * tick, 0, 0, 1, 0, 0], [1, 0, 0, 0], 0.03 * tick, 0.03))
     later = frame_of([0.5, 0.2, 0, 0, 0, 0], [1, 0, 0, 0], 3.0, 0.03)
     assert used.decide(*later) == fresh.decide(*later)
+
+
+@pytest.mark.parametrize("remembers", [True, False])
+def test_a_shot_with_a_memory_brakes_a_late_robot_on_and_on(
+    model: Path, tmp_path: Path, remembers: bool
+) -> None:
+    """Measured from its own late speed each command would brake by as little as the first one."""
+    given = model if remembers else write_model(tmp_path, Aimed(), shoot_card("forgetful"))
+    alone = Alone(Shoot(policy=str(given)))
+    me = robot(0.0, 0.0, 2.0, velocity=(2.0, 0.0, 0.0), contact=True)
+    for start in range(2):
+        for tick in range(4):
+            time = 10.0 * start + 0.03 * tick
+            assert alone.tick(frame(me, ball=held(me), time=time, period=0.03)) is Status.RUNNING
+            braked = 0.09 * (tick + 1 if remembers else 1)
+            assert hypot(alone.command.vx, alone.command.vy) == pytest.approx(2.0 - braked)
+        alone.stop()

@@ -20,7 +20,7 @@ from robobt.learning.envs.go_to_ball.settings import (
 from robobt.learning.envs.go_to_ball.starts import columns_of, go_to_ball_starts
 from robobt.learning.envs.judging import Ledger, Report, begin_tick, end_tick, is_over, parameters, report_of
 from robobt.learning.envs.progress import PROGRESS, EpisodeProgress
-from robobt.learning.envs.scripted import BEHIND, drive_and_face, drive_to_shoot, freest_way
+from robobt.learning.envs.scripted import BEHIND, drive_and_face, drive_to_shoot, freest_way, steady_gain
 from robobt.learning.envs.starts import split, start_parts
 from robobt.learning.envs.task import EpisodeEnds, FloatArray, IntArray
 from robobt.learning.opponents.patrols import PATROL_TRAITS, Patrols
@@ -135,7 +135,10 @@ class GoToBallTask(ArenaTask):
         """See :meth:`ArenaTask.script`."""
         if self._to_shoot:
             return partial(drive_to_shoot, max_turn=self.action.max_turn)
-        return freest_way if self.robots > 1 else partial(drive_and_face, max_turn=self.action.max_turn)
+        if self.robots > 1:
+            return freest_way
+        gain = steady_gain(self.settings.longest_delay)
+        return partial(drive_and_face, max_turn=self.action.max_turn, gain=gain)
 
     def skill(self) -> Skill:
         """See :meth:`ArenaTask.skill`."""

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from functools import partial
 from math import hypot, isnan, nan
 from typing import Protocol
 
 import numpy as np
 
-from robobt.learning.envs.arena_task import ArenaTask
+from robobt.learning.envs.arena_task import ArenaTask, Policy
 from robobt.learning.envs.bounds import BUMP, farthest, seen_speed, seen_turn
 from robobt.learning.envs.judging import (
     Ledger,
@@ -23,6 +24,7 @@ from robobt.learning.envs.progress import PROGRESS, EpisodeProgress
 from robobt.learning.envs.score_on_goalkeeper.rewards import ScoreReward, ScoreTerms, end_reward, reward
 from robobt.learning.envs.score_on_goalkeeper.settings import ScoreOnGoalkeeperSettings
 from robobt.learning.envs.score_on_goalkeeper.starts import SCORE_START_COLUMNS, score_starts
+from robobt.learning.envs.scripted import drive_and_kick, steady_gain
 from robobt.learning.envs.task import BoolArray, EpisodeEnds, FloatArray, IntArray
 from robobt.learning.opponents.keepers import GOALKEEPER_TRAITS, Keepers
 from robobt.world.compiled import compilable, compiled_lean, record_dtype
@@ -96,6 +98,10 @@ class ScoreOnGoalkeeperTask(ArenaTask):
             "ball_speed": seen_speed(settings, max(kicked, *starts.ball_speed), noise.ball_position),
             "keeper_speed": seen_speed(settings, keeper, noise.robot_position),
         }
+
+    def script(self) -> Policy:
+        """See :meth:`ArenaTask.script`."""
+        return partial(drive_and_kick, scaling=self.action, gain=steady_gain(self.settings.longest_delay))
 
     def _build(self) -> None:
         settings = self.settings

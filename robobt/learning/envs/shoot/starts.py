@@ -55,6 +55,11 @@ def _drifts(
     """Draw velocities along x and y, (2, n), from which the robots come to rest inside the ranges."""
     limits = settings.robot_limits
     braking = min(limits.braking, limits.lateral_braking)
+    if settings.gentle:
+        braking = min(braking * settings.randomisation.acceleration[0], limits.hold_acceleration)
+    # A late robot drives on at its speed, and a lag costs as much way.
+    lag = max(limits.lag, limits.side_lag) + settings.randomisation.lag[1]
+    late = settings.longest_delay + lag
     (least_x, most_x), (least_y, most_y) = x, y
     drifts = np.zeros((2, len(robots)))
     open_ = np.arange(len(robots))
@@ -62,8 +67,8 @@ def _drifts(
         vx, vy = velocities(rng, settings.starts.robot_speed, len(open_))
         drifts[:, open_] = vx, vy
         speed = np.hypot(vx, vy)
-        rest_x = robots["x"][open_] + vx * speed / (2.0 * braking)
-        rest_y = robots["y"][open_] + vy * speed / (2.0 * braking)
+        rest_x = robots["x"][open_] + vx * late + vx * speed / (2.0 * braking)
+        rest_y = robots["y"][open_] + vy * late + vy * speed / (2.0 * braking)
         inside = (rest_x >= least_x) & (rest_x <= most_x) & (rest_y >= least_y) & (rest_y <= most_y)
         open_ = open_[~inside]
         if len(open_) == 0:

@@ -21,11 +21,12 @@ from robobt.learning.envs.judging import (
     report_of,
 )
 from robobt.learning.envs.progress import PROGRESS, EpisodeProgress
-from robobt.learning.envs.scripted import turn_and_kick
+from robobt.learning.envs.scripted import steady_gain, turn_and_kick
 from robobt.learning.envs.shoot.rewards import ShootReward, ShootTerms, reward
 from robobt.learning.envs.shoot.settings import ShootSettings
 from robobt.learning.envs.shoot.starts import shoot_starts
-from robobt.learning.envs.task import EpisodeEnds, FloatArray
+from robobt.learning.envs.starts import start_parts
+from robobt.learning.envs.task import EpisodeEnds, FloatArray, IntArray
 from robobt.sim.records import COMMAND
 from robobt.skills.ball.kick_to_target import KickToTarget
 from robobt.skills.base import Skill
@@ -79,6 +80,8 @@ class ShootTask(ArenaTask):
         super().__init__(settings, n, seed)
         settings, field, weights = self.settings, self.settings.field, self.settings.reward
         self._goal = field.half_length, field.goal_width / 2
+        # Commanded to robots that brake gently, in field coordinates [m/s].
+        self._velocity = np.zeros((self.n, 2))
         firing_counts = weights.kick_counts == "fired"
         self._judged_by = parameters(
             _SHOOT_JUDGING, settings=settings, field=field, weights=weights, firing_counts=firing_counts
@@ -92,6 +95,11 @@ class ShootTask(ArenaTask):
         """See :data:`robobt.world.features.SHOOT`."""
         return shoot_rows(robots[:, 0], balls, *self._goal)
 
+    def begin(self, starts: FloatArray, which: IntArray) -> None:
+        """See :meth:`ArenaTask.begin`."""
+        robots, _, _ = start_parts(starts, 1)
+        self._velocity[which] = np.column_stack((robots["vx"][:, 0], robots["vy"][:, 0]))
+
     def _carried(self) -> FloatArray:
         """Return the commands, gentler if the settings say so, as :class:`robobt.skills.Shoot` gives them."""
         commands = super()._carried()
@@ -99,14 +107,14 @@ class ShootTask(ArenaTask):
             return commands
         held, period = self.settings.robot_limits.hold_acceleration, self.settings.period
         gentle = commands.copy()
-        rows, robots = gentle.view(COMMAND)[:, 0, 0], self.arenas.robots.view(ROBOT)[:, 0, 0]
+        rows, heading = gentle.view(COMMAND)[:, 0, 0], self.arenas.robots.view(ROBOT)["heading"][:, 0, 0]
         fastest = sqrt(held / TOUCH_DISTANCE)
         rows["omega"] = np.clip(rows["omega"], -fastest, fastest)
-        speed = np.hypot(robots["vx"], robots["vy"])
-        left = np.where(speed > held * period, 1.0 - held * period / np.maximum(speed, 1e-9), 0.0)
-        c, s = np.cos(robots["heading"]), np.sin(robots["heading"])
-        rows["vx"] = left * (c * robots["vx"] + s * robots["vy"])
-        rows["vy"] = left * (c * robots["vy"] - s * robots["vx"])
+        # Braking follows from the commands alone: a late robot's own speed would let it brake too slowly.
+        speed = np.maximum(np.hypot(*self._velocity.T), 1e-9)
+        self._velocity *= np.maximum(1.0 - held * period / speed, 0.0)[:, None]
+        (vx, vy), c, s = self._velocity.T, np.cos(heading), np.sin(heading)
+        rows["vx"], rows["vy"] = c * vx + s * vy, c * vy - s * vx
         return gentle
 
     @property
@@ -127,7 +135,8 @@ class ShootTask(ArenaTask):
         dribbler = simulator.dribbler
         held = dribbler.pull if dribbler.kind == "force" else simulator.limits.hold_acceleration
         pull = np.inf if dribbler.kind == "glue" else _HOLDING_SHARE * held
-        return partial(turn_and_kick, scaling=self.action, pull=pull)
+        gain = steady_gain(self.settings.longest_delay)
+        return partial(turn_and_kick, scaling=self.action, pull=pull, gain=gain)
 
     def skill(self) -> Skill:
         """See :meth:`ArenaTask.skill`."""
