@@ -5,7 +5,7 @@ from __future__ import annotations
 import copy
 import inspect
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from hashlib import sha256
 from io import BytesIO
@@ -17,7 +17,7 @@ from torch import Tensor, nn
 
 from robobt.config.atomic import replacing
 from robobt.config.errors import naming
-from robobt.models.card import ModelCard
+from robobt.models.card import MAX_CARD_SIZE, Measured, ModelCard
 from robobt.models.file import (
     MANIFEST,
     SUFFIXES,
@@ -28,6 +28,7 @@ from robobt.models.file import (
     pack_onnx,
     payload_of,
     read_manifest,
+    read_model_file,
     unpack_archive,
 )
 from robobt.models.policy import load_policy, quiet
@@ -100,6 +101,30 @@ def export_model(
         told = f"; written all the same: {', '.join(map(str, written))}" if written else ""
         raise ModelError(f"{problems[0]}{told}") from problems[0]
     return tuple(files)
+
+
+def add_figures(path: Path, figures: Mapping[str, Measured]) -> None:
+    """Add figures to those on the card of a TorchScript model, and enter the file anew in the manifest.
+
+    Args:
+        path: the model's file.
+        figures: by name; one that the card has is replaced.
+
+    Raises:
+        ModelError: it is no TorchScript model, or the card grows too long.
+    """
+    file = read_model_file(path)
+    if file.format != "torchscript":
+        raise ModelError(f"{path}: figures are added to TorchScript models only")
+    card = file.card.model_copy(update={"held_out": {**file.card.held_out, **figures}})
+    text = card.to_json()
+    if len(text) > MAX_CARD_SIZE:
+        raise ModelError(f"{path}: its card would be {len(text)} bytes, more than {MAX_CARD_SIZE}")
+    data = pack_archive(unpack_archive(file.content), text)
+    listed = {**read_manifest(path.parent), path.name: sha256(data).hexdigest()}
+    for written, content in ((path, data), (path.parent / MANIFEST, manifest_text(listed).encode())):
+        with _written(written, content):
+            pass
 
 
 def refuse_to_replace(path: Path, force: bool) -> None:

@@ -15,7 +15,8 @@ from torch import Tensor, nn
 
 from robobt.learning.agents.networks import Actor
 from robobt.models import export
-from robobt.models.export import export_model
+from robobt.models.card import Measured
+from robobt.models.export import add_figures, export_model
 from robobt.models.file import MANIFEST, Format, ModelError, read_manifest, read_model_file
 from robobt.models.find import list_models
 from robobt.models.policy import Policy, load_policy
@@ -199,3 +200,21 @@ def test_the_manifest_keeps_the_models_of_other_exports(tmp_path: Path) -> None:
     (tmp_path / MANIFEST).write_text("what?\n")
     with pytest.raises(ModelError, match="manifest, line 1"):
         export_model(network(), go_to_ball_card("third"), tmp_path)
+
+
+def test_figures_are_added_to_a_card_and_nothing_else_changes(tmp_path: Path) -> None:
+    first = {"success": Measured(value=0.9, n=100)}
+    (path,) = export_model(network(), go_to_ball_card("mine", held_out=first), tmp_path)
+    before, row = load_policy(path), np.linspace(-1.0, 1.0, 6)
+    late = Measured(value=0.8, low=0.7, high=0.9, n=100, interval="95 % Wilson")
+    add_figures(path, {"success, +60 ms": late})
+    after = load_policy(path)
+    assert after.card.held_out == {**first, "success, +60 ms": late}
+    assert after.card.model_copy(update={"held_out": first}) == before.card
+    np.testing.assert_array_equal(after(row), before(row))
+    assert read_manifest(tmp_path)["mine.pt"] == read_model_file(path).sha256
+    with pytest.raises(ModelError, match="its card would be"):
+        add_figures(path, {str(k): late for k in range(2000)})
+    (onnx,) = export_model(network(), go_to_ball_card("other"), tmp_path, ("onnx",))
+    with pytest.raises(ModelError, match="TorchScript models only"):
+        add_figures(onnx, {"success, +60 ms": late})
