@@ -31,6 +31,9 @@ CELLS: dict[str, dict[str, Any]] = {
 """Changes to the training environment by cell. ``delay`` is the whole delay beyond that of training [s];
 all randomisation of training is off, except for its delay's least value."""
 
+_ITS_OWN = ("action", "period", "decide_every", "memory")
+"""Settings of an environment by which a policy observes and acts."""
+
 
 def cell_environment(environment: TaskSettings, changes: Mapping[str, Any]) -> TaskSettings:
     """Return the environment of a cell: that of training without its randomisation, and changed."""
@@ -50,24 +53,25 @@ def cell_environment(environment: TaskSettings, changes: Mapping[str, Any]) -> T
 def degradation(
     sources: Sequence[str], starts: int, seed: int, cells: Sequence[str] = ()
 ) -> dict[str, dict[str, Evaluation]]:
-    """Return results by cell and player: each policy in its own environment, script and skill in the first's.
+    """Return results by cell and player, all in the environment that the first policy was trained in.
 
     Args:
-        sources: runs or models of one task.
+        sources: runs or models of one task; each observes and acts as it was trained to.
         starts: of each cell.
         seed: of starts and noise.
         cells: names of :data:`CELLS`; all if empty.
     """
     found: dict[str, dict[str, Evaluation]] = {}
     policies = {source: trained_policy(source) for source in sources}
+    first = policies[sources[0]][0]
     for name, changes in CELLS.items():
         if cells and name not in cells:
             continue
         results: dict[str, Evaluation] = {}
         for source, (environment, policy) in policies.items():
-            judged = judge(
-                cell_environment(environment, changes), {source: policy}, starts, seed, not results
-            )
+            own = {name: getattr(environment, name) for name in _ITS_OWN}
+            cell = cell_environment(first.model_copy(update=own), changes)
+            judged = judge(cell, {source: policy}, starts, seed, not results)
             results = {**results, source: judged.pop(source), **judged}
         found[name] = results
     return found
