@@ -104,7 +104,7 @@ def export_model(
 
 
 def add_figures(path: Path, figures: Mapping[str, Measured]) -> None:
-    """Add figures to those on the card of a TorchScript model, and enter the file anew in the manifest.
+    """Add figures to those on the card of a TorchScript model, and enter the file again in the manifest.
 
     Args:
         path: the model's file.

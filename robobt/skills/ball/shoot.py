@@ -142,14 +142,16 @@ class LearnedShot:
     def __call__(self, store: Store) -> RobotCommand:
         """Compute the command of one tick."""
         decided, me = self._control.decide(store.frame, store.me, store.draw), store.me
-        held = me.limits.hold_acceleration
+        held, vx, vy = me.limits.hold_acceleration, me.vx, me.vy
+        if self._control.remembers:
+            # Turning and braking pull at the ball at right angles.
+            held *= sqrt(0.5)
+            if self._velocity is not None:
+                # A late robot's own speed would let it brake too slowly.
+                vx, vy = self._velocity
         # Turning at rate w with the ball at distance L needs the acceleration w^2 L.
         fastest = sqrt(held / TOUCH_DISTANCE)
         decided.omega = min(fastest, max(-fastest, decided.omega))
-        vx, vy = me.vx, me.vy
-        if self._control.remembers and self._velocity is not None:
-            # A late robot's own speed would let it brake too slowly.
-            vx, vy = self._velocity
         speed = hypot(vx, vy)
         self._velocity = 0.0, 0.0
         if speed > held * store.frame.period:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import hypot
+from math import hypot, sqrt
 from pathlib import Path
 
 import numpy as np
@@ -95,6 +95,6 @@ def test_a_shot_with_a_memory_brakes_a_late_robot_on_and_on(
         for tick in range(4):
             time = 10.0 * start + 0.03 * tick
             assert alone.tick(frame(me, ball=held(me), time=time, period=0.03)) is Status.RUNNING
-            braked = 0.09 * (tick + 1 if remembers else 1)
+            braked = 0.09 * ((tick + 1) * sqrt(0.5) if remembers else 1)
             assert hypot(alone.command.vx, alone.command.vy) == pytest.approx(2.0 - braked)
         alone.stop()

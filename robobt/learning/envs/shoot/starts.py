@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import lru_cache
+from math import sqrt
 
 import numpy as np
 
@@ -56,7 +57,7 @@ def _drifts(
     limits = settings.robot_limits
     braking = min(limits.braking, limits.lateral_braking)
     if settings.gentle:
-        braking = min(braking * settings.randomisation.acceleration[0], limits.hold_acceleration)
+        braking = min(braking * settings.randomisation.acceleration[0], limits.hold_acceleration * sqrt(0.5))
     # A late robot drives on at its speed, and a lag costs as much way.
     lag = max(limits.lag, limits.side_lag) + settings.randomisation.lag[1]
     late = settings.longest_delay + lag

@@ -105,7 +105,8 @@ class ShootTask(ArenaTask):
         commands = super()._carried()
         if not self.settings.gentle:
             return commands
-        held, period = self.settings.robot_limits.hold_acceleration, self.settings.period
+        # Turning and braking pull at the ball at right angles.
+        held, period = self.settings.robot_limits.hold_acceleration * sqrt(0.5), self.settings.period
         gentle = commands.copy()
         rows, heading = gentle.view(COMMAND)[:, 0, 0], self.arenas.robots.view(ROBOT)["heading"][:, 0, 0]
         fastest = sqrt(held / TOUCH_DISTANCE)
