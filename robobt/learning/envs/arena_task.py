@@ -124,13 +124,11 @@ class ArenaTask:
         self.n = n
         self.action = settings.action
         self.seen_size = self.observation.size
+        self._without_memory = self.observation
         self._memory_size: MemorySize | None = None
         if settings.memory != MemorySettings():
-            if len(self.learners) > 1:
-                raise ValueError(f"{type(self).__name__}: memory is for tasks with one learner")
             actions, seen = settings.memory.actions, settings.memory.observations
             self._memory_size = MemorySize(self.observation.name, actions, self.action.size, seen)
-            self._made = self.observation
             self.observation = with_memory(self.observation, self._memory_size)
         self.observation_size = len(self.learners) * self.observation.size
         self.action_size = len(self.learners) * self.action.size
@@ -148,7 +146,7 @@ class ArenaTask:
         judged_by = next(kind for kind in type(self).__mro__ if "_judge" in vars(kind))
         self._own_reward = type(self).reward is not judged_by.__dict__.get("reward", ArenaTask.reward)
         self._own_observations = not type(self).observe.__module__.startswith("robobt.") or isinstance(
-            self.observation if self._memory_size is None else self._made, Observation
+            self._without_memory, Observation
         )
         self._own_opponents = not type(self).oppose.__module__.startswith("robobt.")
         self._own_ends = type(self).ends is not judged_by.__dict__.get("ends", ArenaTask.ends)
@@ -162,7 +160,7 @@ class ArenaTask:
 
     def observe(self, robots: FloatArray, balls: FloatArray) -> FloatArray:
         """Compute the observations (m, O) of robots (m, R, 6) and balls (m, 4)."""
-        maker = self.observation if self._memory_size is None else self._made
+        maker = self._without_memory
         if not isinstance(maker, Observation):
             raise NotImplementedError(f"{type(self).__name__}: nothing makes its observation")
         made: FloatArray = np.asarray(

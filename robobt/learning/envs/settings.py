@@ -7,7 +7,7 @@ from typing import Annotated, Literal, Self
 
 from pydantic import BeforeValidator, Field, model_validator
 
-from robobt.config.errors import unknown_name
+from robobt.config.errors import FieldError, unknown_name
 from robobt.config.validation import Settings
 from robobt.models.actions import SCORE_ACTION, ActionScaling
 from robobt.sim.settings import SimSettings, preset, settings_from
@@ -167,6 +167,12 @@ class TaskSettings(OrderedSettings):
                 if value.get("kind", kept.get("kind")) == kept.get("kind"):
                     result[name] = {**kept, **value}
         return result
+
+    @model_validator(mode="after")
+    def _one_remembers(self) -> Self:
+        if self.memory != MemorySettings() and len(self.learners) > 1:
+            raise FieldError("memory", "is for tasks with one learner")
+        return self
 
     @model_validator(mode="after")
     def _fine_steps(self) -> Self:

@@ -15,6 +15,7 @@ from robobt.learning.envs import (
     GoToBallSettings,
     ShootSettings,
 )
+from robobt.learning.envs.make import find_task
 from robobt.models.actions import ActionScaling
 from robobt.sim import preset
 from robobt.world import DIVISION_B
@@ -95,3 +96,9 @@ def test_an_action_needs_its_scale() -> None:
     with pytest.raises(ValidationError, match="kick_speed"):
         ActionScaling(kind="turn_and_kick", max_turn=1.0)
     assert ActionScaling(kind="turn_and_kick", max_turn=1.0, kick_speed=2.0).entries == ("omega", "kick")
+
+
+def test_only_a_task_with_one_learner_has_a_memory() -> None:
+    assert find_task("go_to_ball").Settings.model_validate({"memory": {"actions": 2}}).memory.actions == 2
+    with pytest.raises(ValidationError, match="is for tasks with one learner"):
+        find_task("duel").Settings.model_validate({"memory": {"actions": 2}})
