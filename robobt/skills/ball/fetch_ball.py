@@ -27,6 +27,9 @@ _FETCHING_SPEED = 0.5
 _PULL_ACCELERATION = 0.8
 """Deceleration when driving backwards with the ball in the dribbler [m/s^2]."""
 
+_STEADY_DISTANCE = 0.2
+"""Distance from the place within which the robot no longer turns with the ball [m]."""
+
 
 def pull(
     frame: Frame,
@@ -64,7 +67,9 @@ def pull(
             max_turn=1.0,
             max_acceleration=min(_PULL_ACCELERATION, me.limits.hold_acceleration),
         )
-        command = drive(me, place, direction(place, me.position), pulling, frame.period)
+        near = distance(me.position, place) < _STEADY_DISTANCE
+        heading = me.heading if near else direction(place, me.position)
+        command = drive(me, place, heading, pulling, frame.period)
         command.dribbler = True
         return command, "pulling it"
     outwards = direction(place, ball)

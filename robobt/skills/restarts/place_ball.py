@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import field
 from math import copysign, cos, hypot, sin
 
+from robobt.motion.dribbling import settle
 from robobt.motion.path_planner import travel
 from robobt.motion.pilot import drive
 from robobt.skills.ball.fetch_ball import pull
@@ -12,7 +13,6 @@ from robobt.skills.base import skill
 from robobt.skills.driving import DrivingSkill
 from robobt.skills.restarts.keep_distance import way_out
 from robobt.tree import Status
-from robobt.world.command import RobotCommand
 from robobt.world.game import RefereeCommand
 from robobt.world.geometry import Point, direction, distance
 from robobt.world.rules import STOP_DISTANCE, has_ball
@@ -29,6 +29,9 @@ _LET_GO_DISTANCE, _TAKE_AGAIN_DISTANCE = 0.06, 0.12
 
 _STANDSTILL_SPEED = 0.1
 """A ball or robot slower than this is at rest [m/s]."""
+
+_RELEASING = 0.2
+"""How long the robot stands with the dribbler off before it leaves a ball that the dribbler has spun [s]."""
 
 _FREE_TURN_DISTANCE = 0.25
 """Distance from which a robot can turn without touching the ball [m]."""
@@ -64,6 +67,7 @@ class PlaceBall(DrivingSkill):
 
     _there: bool = field(default=False, init=False)
     _let_go: bool = field(default=False, init=False)
+    _released: float = field(default=0.0, init=False)
     _inwards: bool = field(default=False, init=False)
     _refuge: Point | None = field(default=None, init=False)
 
@@ -102,9 +106,12 @@ class PlaceBall(DrivingSkill):
             return self.run(doing)
         self._there = True
         if not self._let_go and has_ball(me, ball) and hypot(me.vx, me.vy) > _STANDSTILL_SPEED:
-            self.store.command = RobotCommand(dribbler=True)
+            self.store.command = settle(me, frame.period)
             return self.run("stopping with it")
-        self._let_go = True
+        if not self._let_go:
+            self._let_go, self._released = True, frame.time
+        if has_ball(me, ball) and frame.time - self._released < _RELEASING:
+            return self.run("letting it come to rest")
         gap = distance(me.position, ball.position)
         if gap >= _PLACED_BALL_DISTANCE:
             return self.run("clear of it")

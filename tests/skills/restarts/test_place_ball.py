@@ -68,9 +68,22 @@ def test_the_ball_comes_to_rest_on_the_spot_and_the_robot_leaves_it(
 
 
 @pytest.mark.integration
-def test_a_dribbler_that_holds_little_is_not_asked_for_more() -> None:
-    last = place((1.0, 1.0), (-1.0, -1.0), 20.0, "erforce").frames[-1]
-    assert hypot(last.ball.x + 1.0, last.ball.y + 1.0) < 0.15
+@pytest.mark.parametrize(
+    ("ball", "spot"),
+    [
+        ((1.0, 1.0), (-1.0, -1.0)),
+        ((4.66, 0.09), (4.15, -2.6)),
+        ((1.1, -1.7), (4.0, 2.75)),
+        ((4.49, -0.37), (4.3, -2.8)),
+    ],
+)
+def test_a_dribbler_that_holds_little_and_spins_the_ball_places_it_at_once(ball: Point, spot: Point) -> None:
+    # It holds against 0.35 m/s^2; released in motion, or with the ball still spinning, the ball rolls off.
+    frames = place(ball, spot, 14.0, "erforce").frames
+    assert hypot(frames[-1].ball.x - spot[0], frames[-1].ball.y - spot[1]) < 0.05
+    taken = [frame.own[0].ball_contact for frame in frames]
+    lost = sum(before and not any(taken[i : i + 30]) for i, before in enumerate(taken, 1))
+    assert lost == 1
 
 
 def test_the_ball_is_never_kicked() -> None:
