@@ -370,11 +370,11 @@ class VisionFilter:
         if self._flights.at(time) is not None:
             return
         motions = {robot: self._robot_at(robot, time) for robot in self._robots}
-        predicted = self._ball_at(time, motions)
+        predicted, held = self._ball_at(time, motions), bool(self.possession.holds)
         ball = self.possession.update_unseen(predicted, motions)
-        if ball is not None:
+        if held or ball is not None:
             self._moved_unseen = time
-        # From where it was moved to before, the robots may have gone on over that place.
+        # A robot that loses it leaves it here, and not where it was seen last.
         if self._moved_unseen > self._ball_seen:
             track.carry(ball or predicted, time)
 

@@ -339,6 +339,18 @@ def test_a_hidden_ball_is_in_the_mouth_whose_sensor_reports_it(watched: Watched)
     assert frame.ball.x > 0.24 + mouth - 0.02
 
 
+def test_a_hidden_ball_that_is_lost_stays_where_the_robot_lost_it(watched: Watched) -> None:
+    mouth = REALISTIC.body.face + 0.0215
+    watched.filter.possession.feedback[ME] = True
+    watched.see_for(0.3, lambda t: (t, 0.0, 0.0), lambda t: (t + mouth, 0.0))
+    watched.see_for(0.6, lambda t: (0.3 + t, 0.0, 0.0))
+    watched.filter.possession.feedback[ME] = False
+    watched.see_for(0.1, lambda t: (0.9 - t, 0.0, 0.0))
+    frame = watched.frame()
+    assert not frame.own[0].ball_contact
+    assert frame.ball.x == pytest.approx(0.9 + mouth + 0.1, abs=0.05)
+
+
 def test_no_robot_stands_on_a_hidden_ball(watched: Watched) -> None:
     watched.see_for(0.3, lambda _: (-0.4, 0.02, 0.0), lambda _: (0.0, 0.0))
     watched.see_for(0.8, lambda t: (-0.4 + 0.8 * t, 0.02, 0.0))
