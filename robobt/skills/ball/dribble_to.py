@@ -18,7 +18,7 @@ from robobt.world.rules import has_ball
 
 _GRACE = 0.15
 """The ball counts as lost once it has been out of the mouth for this long [s]."""
-_SLIPPED = 0.1
+SLIPPED = 0.1
 """A ball that has been out of the mouth for this long, but lies before it, is taken again [s]."""
 _RULE_MARGIN = 0.1
 """Distance before the dribbling limit at which the skill gives up, so that the ball is released in time
@@ -110,7 +110,7 @@ class DribbleTo(Skill):
         frame, me, limits = self.frame, self.me, self._limits
         if me.ball_contact:
             self._last_contact = frame.time
-        elif frame.time - self._last_contact >= _SLIPPED:
+        elif frame.time - self._last_contact >= SLIPPED:
             self.store.command = grab(me, self.ball, me.limits.catch_speed, frame.period)
             return
         point, speed_there = next_waypoint(frame, me, target)

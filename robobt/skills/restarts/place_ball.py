@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import field
-from math import copysign, cos, hypot, sin
+from math import copysign, cos, hypot, inf, sin
 
 from robobt.motion.dribbling import settle
 from robobt.motion.path_planner import travel
 from robobt.motion.pilot import drive
+from robobt.skills.ball.dribble_to import SLIPPED
 from robobt.skills.ball.fetch_ball import pull
 from robobt.skills.base import skill
 from robobt.skills.driving import DrivingSkill
@@ -68,12 +69,14 @@ class PlaceBall(DrivingSkill):
     _there: bool = field(default=False, init=False)
     _let_go: bool = field(default=False, init=False)
     _released: float = field(default=0.0, init=False)
+    _last_contact: float = field(default=-inf, init=False)
     _inwards: bool = field(default=False, init=False)
     _refuge: Point | None = field(default=None, init=False)
 
     def on_start(self) -> None:
         """Forget that the ball was placed."""
         self._there = self._let_go = self._inwards = False
+        self._last_contact = -inf
 
     def on_running(self) -> Status:
         """Drive for one tick."""
@@ -96,7 +99,7 @@ class PlaceBall(DrivingSkill):
             self.store.command, doing = pull(
                 frame,
                 me,
-                has_ball(me, ball),
+                self._holds(),
                 place,
                 self.drive_limits,
                 _PLACING_SPEED,
@@ -128,6 +131,12 @@ class PlaceBall(DrivingSkill):
                 frame, me, self._refuge, me.heading, me.limits, avoid_ball=True, sketch=self.draw
             )
         return self.run("backing off")
+
+    def _holds(self) -> bool:
+        """Return whether the robot holds the ball, of which the sensor may be silent for a moment."""
+        if self.me.ball_contact:
+            self._last_contact = self.frame.time
+        return has_ball(self.me, self.ball) and self.frame.time - self._last_contact < SLIPPED
 
     def _via(self, spot: Point) -> Point:
         """Return the ball's current target; from goals, walls and corners it first goes straight inwards."""

@@ -4,12 +4,14 @@ from math import hypot, pi
 
 import pytest
 
+from robobt.motion.catch import MOUTH
 from robobt.skills.restarts.place_ball import PlaceBall
-from robobt.testing import Trial, blue, robot
+from robobt.testing import Trial, blue, frame, robot
 from robobt.tree import Status
 from robobt.world import GameState, RefereeCommand, Restart, Team
 from robobt.world.geometry import Point
 from robobt.world.state import Frame
+from tests.skills.fixed_world import Alone
 from tests.skills.refereed import STOP, Drive, free_kick, placement
 
 
@@ -84,6 +86,15 @@ def test_a_dribbler_that_holds_little_and_spins_the_ball_places_it_at_once(ball:
     taken = [frame.own[0].ball_contact for frame in frames]
     lost = sum(before and not any(taken[i : i + 30]) for i, before in enumerate(taken, 1))
     assert lost == 1
+
+
+def test_a_ball_that_lies_before_the_mouth_is_taken_before_it_is_pulled() -> None:
+    alone, me = Alone(PlaceBall()), robot()
+    for step in range(12):
+        seen = frame(me, ball=(MOUTH + 0.012, 0.004), time=step / 60)
+        seen.game = placement((-2.0, 0.0), Team.BLUE)
+        alone.tick(seen)
+        assert alone.command.vx > 0.0
 
 
 def test_the_ball_is_never_kicked() -> None:
