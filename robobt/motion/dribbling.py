@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from functools import lru_cache
-from math import cos, sin
+from math import cos, inf, sin, sqrt
 
 from robobt.motion.catch import MOUTH
 from robobt.motion.pilot import command, turn_rate
 from robobt.world.command import RobotCommand
 from robobt.world.geometry import Point
 from robobt.world.limits import RobotLimits
-from robobt.world.state import BallState, RobotState
+from robobt.world.state import TOUCH_DISTANCE, BallState, RobotState
 
 MAX_TURN = 2.0
 """Turning rate at which every dribbler of the simulator's presets holds the ball [rad/s]."""
@@ -22,16 +22,50 @@ TURN_ACCELERATION = 15.0
 
 @lru_cache(maxsize=64)
 def dribbling_limits(
-    max_speed: float = 2.0, max_turn: float = MAX_TURN, max_acceleration: float = MAX_ACCELERATION
+    max_speed: float = 2.0,
+    max_turn: float = MAX_TURN,
+    max_acceleration: float = MAX_ACCELERATION,
+    held: float = inf,
 ) -> RobotLimits:
-    """Limits for driving with the ball, the same in every direction [m/s, rad/s, m/s^2]."""
+    """Limits for driving with the ball.
+
+    Args:
+        max_speed: top speed, the same in every direction [m/s].
+        max_turn: turning rate [rad/s].
+        max_acceleration: acceleration [m/s^2].
+        held: acceleration at which the dribbler keeps the ball. It limits changes of the turning rate, and
+            all acceleration but speeding up along the heading, which pushes the ball [m/s^2].
+    """
+    holding = min(max_acceleration, held)
     return RobotLimits(
         max_speed=max_speed,
         acceleration=max_acceleration,
-        braking=max_acceleration,
+        braking=holding,
+        side_acceleration=holding,
+        side_braking=holding,
         max_turn=max_turn,
         turn_acceleration=TURN_ACCELERATION,
     )
+
+
+def carrying_limits(
+    own: RobotLimits,
+    max_speed: float = 2.0,
+    max_turn: float = MAX_TURN,
+    max_acceleration: float = MAX_ACCELERATION,
+) -> RobotLimits:
+    """Limits for driving ahead with the ball, within what the robot's own dribbler holds.
+
+    Turning at a rate w with the ball at a distance L needs the acceleration w^2 L.
+
+    Args:
+        own: the robot's limits.
+        max_speed: top speed [m/s].
+        max_turn: turning rate [rad/s].
+        max_acceleration: acceleration and braking [m/s^2].
+    """
+    held = own.hold_acceleration
+    return dribbling_limits(max_speed, min(max_turn, sqrt(held / TOUCH_DISTANCE)), max_acceleration, held)
 
 
 def settle(me: RobotState, period: float) -> RobotCommand:

@@ -20,7 +20,7 @@ from robobt.learning.opponents.sides import Arenas, see_ball, see_robots
 from robobt.motion.arrival import meetings
 from robobt.motion.ball_watch import Watch, follow
 from robobt.motion.catch import MOUTH
-from robobt.motion.dribbling import dribbling_limits
+from robobt.motion.dribbling import carrying_limits, dribbling_limits
 from robobt.motion.give_way import BRAKES, slowed_in_play
 from robobt.motion.path_planner import travel_law, waypoint_law
 from robobt.motion.pilot import command_law, turn_law
@@ -174,7 +174,7 @@ class Challengers:
         top = limits.max_speed if speed is None else min(speed, limits.max_speed)
         given = limits if top == limits.max_speed else limits.model_copy(update={"max_speed": top})
         brakes = dribbling_limits(max_acceleration=SettleBall.share * limits.hold_acceleration)
-        driving = [limits_of(each) for each in (limits, given, dribbling_limits(CARRYING), brakes)]
+        driving = [limits_of(each) for each in (limits, given, carrying_limits(limits, CARRYING), brakes)]
         self._tactics = applied(tactics, field, DEFAULT_BALL)
         # Each team sees its own robots first, numbered from 0, in open play.
         self._sides: list[tuple[float, int, NDArray[np.int64], FloatArray]] = []
@@ -360,7 +360,7 @@ def _carry(
     trip.ball_gap, trip.avoids_robots = -1.0, 1.0
     x, y, there = waypoint_law(trip, (trip.x, trip.y), scene, movers, own, True)
     heading = steady(memory.course, time, direction((me.x, me.y), (x, y)), KEEP_WAY)
-    pace = limits.max_speed, limits.acceleration
+    pace = limits.max_speed, limits.acceleration, limits.braking
     velocity = carrying_velocity(me, (x, y), there, heading, pace, scene.period + 2.0 * own.trailing_time)
     _handle(team, velocity, heading, limits, True, command)
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from math import cos, hypot, inf
 
-from robobt.motion.dribbling import MAX_ACCELERATION, MAX_TURN, dribbling_limits
+from robobt.motion.dribbling import MAX_ACCELERATION, MAX_TURN, carrying_limits
 from robobt.motion.path_planner import next_waypoint
 from robobt.motion.pilot import approach_speed, command, turn_rate
 from robobt.skills.ball.pick_up_ball import grab
@@ -75,7 +75,6 @@ class DribbleTo(Skill):
         super().__post_init__()
         if not self.keep >= 0.0:
             raise ValueError(f"keep must be 0 or more, not {self.keep}")
-        self._limits = dribbling_limits(self.max_speed, self.max_turn, self.max_acceleration)
 
     def on_start(self) -> None:
         """Take the ball's current position as the start of the carry."""
@@ -107,7 +106,8 @@ class DribbleTo(Skill):
         return self.run("carrying the ball")
 
     def _carry(self, target: Point) -> None:
-        frame, me, limits = self.frame, self.me, self._limits
+        frame, me = self.frame, self.me
+        limits = carrying_limits(me.limits, self.max_speed, self.max_turn, self.max_acceleration)
         if me.ball_contact:
             self._last_contact = frame.time
         elif frame.time - self._last_contact >= SLIPPED:
@@ -115,7 +115,7 @@ class DribbleTo(Skill):
             return
         point, speed_there = next_waypoint(frame, me, target)
         heading = steady(self._course, frame.time, direction(me.position, point), self.keep)
-        pace = limits.max_speed, limits.acceleration
+        pace = limits.max_speed, limits.acceleration, limits.braking
         stands = frame.period + 2.0 * me.limits.trailing_time
         vx, vy = carrying_velocity(me, point, speed_there, heading, pace, stands)
         omega = turn_rate(me, heading, limits, frame.period)
@@ -134,7 +134,12 @@ def steady(course: Course, now: float, way: float, keep: float) -> float:
 
 @compilable
 def carrying_velocity(
-    me: Robot, point: Point, speed_there: float, heading: float, pace: Point, stands: float
+    me: Robot,
+    point: Point,
+    speed_there: float,
+    heading: float,
+    pace: tuple[float, float, float],
+    stands: float,
 ) -> Point:
     """Return the velocity with which the ball is carried to the next ``point`` of a way [m/s].
 
@@ -143,10 +148,10 @@ def carrying_velocity(
         point: the next point of the way [m].
         speed_there: speed allowed there [m/s].
         heading: direction the robot is to face [rad].
-        pace: top speed and acceleration with the ball [m/s, m/s^2].
+        pace: top speed, acceleration and braking with the ball [m/s, m/s^2, m/s^2].
         stands: duration for which a command is held [s].
     """
-    top, acceleration = pace
+    top, acceleration, braking = pace
     dx, dy = point[0] - me.x, point[1] - me.y
     gap = hypot(dx, dy)
     if gap <= 0.0:
@@ -154,11 +159,11 @@ def carrying_velocity(
     ux, uy = dx / gap, dy / gap
     speed_there = min(speed_there, top)
     speed = approach_speed(
-        gap + speed_there * speed_there / (2.0 * acceleration),
+        gap + speed_there * speed_there / (2.0 * braking),
         ux * me.vx + uy * me.vy,
         top,
         acceleration,
-        acceleration,
+        braking,
         stands,
     )
     # The ball stays only while it is pushed, so the robot turns first and drives once it faces the way.

@@ -5,6 +5,7 @@ from math import copysign, hypot, pi
 import pytest
 
 from robobt.motion.dribbling import MAX_ACCELERATION, MAX_TURN, TURN_ACCELERATION, dribbling_limits, settle
+from robobt.sim import SimSettings
 from robobt.skills import DribbleTo
 from robobt.testing import (
     Trial,
@@ -23,9 +24,10 @@ from robobt.testing import (
     yellow,
 )
 from robobt.tree import Status
-from robobt.world import Frame
+from robobt.world import Frame, RobotLimits
 from robobt.world.geometry import to_robot_frame
-from tests.skills.fixed_world import Alone
+from robobt.world.state import TOUCH_DISTANCE
+from tests.skills.fixed_world import Alone, moved
 
 MOUTH = 0.0975
 
@@ -87,6 +89,23 @@ def test_its_commands_stay_within_what_the_dribbler_bears(heading: float) -> Non
     middle = heading + command.omega * period / 2
     vx, vy = to_robot_frame(me.vx, me.vy, middle)
     assert hypot(command.vx - vx, command.vy - vy) <= MAX_ACCELERATION * period + 1e-9
+
+
+def test_it_brakes_and_turns_only_as_hard_as_a_weak_dribbler_holds() -> None:
+    period, limits = 1 / 60, RobotLimits(hold_acceleration=0.35)
+    for target in ((2.0, 0.0), (0.3, 2.0)):
+        dribble, me = Alone(DribbleTo(target=target)), robot(contact=True, limits=limits)
+        gains = []
+        for _ in range(600):
+            dribble.tick(frame(me, ball=held(me), period=period))
+            driven = moved(me, dribble.command, period)
+            gains.append((driven.speed - me.speed) / period)
+            assert driven.omega**2 * TOUCH_DISTANCE <= 0.35 + 1e-9
+            me = driven
+        assert min(gains) > -0.4
+        # Speeding up pushes the ball, and needs no dribbler.
+        assert max(gains) > 1.4
+        assert hypot(me.x - target[0], me.y - target[1]) < 0.1
 
 
 def test_a_ball_gone_for_a_moment_is_not_yet_lost() -> None:
@@ -154,7 +173,8 @@ def test_it_carries_the_ball_round_an_opponent() -> None:
 def test_turning_hard_with_the_ball_is_what_loses_it() -> None:
     """The same way with limits beyond the dribbler's: the bar above is not a free pass."""
     wild = DribbleTo(target=(-2.0, 0.5), max_speed=3.0, max_turn=9.0, max_acceleration=6.0)
-    trial = alone(wild, (0.0, 0.0, 0.0), (MOUTH, 0.0))
+    told = SimSettings(limits=RobotLimits(hold_acceleration=50.0))
+    trial = alone(wild, (0.0, 0.0, 0.0), (MOUTH, 0.0), told)
     trial.run(3.0, eventually("the ball is lost", fails(wild)))
 
 
