@@ -10,9 +10,12 @@ from rich.markup import escape
 
 from robobt.cli.common import MAX_SEED, Json, console, errors, print_json, table
 from robobt.learning.agents.networks import one_thread
-from robobt.learning.envs import TaskSettings, make_task
+from robobt.learning.envs import ShootSettings, TaskSettings, make_task
 from robobt.learning.training.evaluation import Evaluation
 from robobt.learning.training.fresh_starts import judge, trained_policy
+from robobt.models.card import Measured
+from robobt.models.export import add_figures
+from robobt.models.find import find_model
 
 CELLS: dict[str, dict[str, Any]] = {
     "as trained": {},
@@ -23,13 +26,17 @@ CELLS: dict[str, dict[str, Any]] = {
     "dribbler x 0.5": {"randomisation": {"dribbler": (0.5, 0.5)}},
     "default": {"simulator": "default"},
     "grsim": {"simulator": "grsim"},
-    "erforce": {"simulator": "erforce"},
+    "erforce": {
+        "simulator": "erforce",
+        "shoot_starts": {"robot_speed": (0.0, 0.5), "robot_turn": (-0.5, 0.5), "ball_aside": (-0.01, 0.01)},
+    },
     "sumatra": {"simulator": "sumatra"},
     "rsim": {"simulator": "rsim"},
     "realistic": {"noise": {"robot_position": 0.0013, "ball_position": 0.0014, "heading": 0.01}},
 }
 """Changes to the training environment by cell. ``delay`` is the whole delay beyond that of training [s];
-all randomisation of training is off, except for its delay's least value."""
+all randomisation of training is off, except for its delay's least value. ``shoot_starts`` are those of Shoot:
+ER-Force's dribbler holds a ball only near its middle, of a robot that drives slowly."""
 
 _ITS_OWN = ("action", "period", "decide_every", "memory")
 """Settings of an environment by which a policy observes and acts."""
@@ -44,6 +51,8 @@ def cell_environment(environment: TaskSettings, changes: Mapping[str, Any]) -> T
     for name in ("simulator", "noise"):
         if name in changes:
             data[name] = changes[name]
+    if isinstance(environment, ShootSettings) and "shoot_starts" in changes:
+        data["starts"].update(changes["shoot_starts"])
     if "simulator" in changes:
         # Robots are the simulator's own, as far as the policy commands them.
         data["limits"] = None
@@ -77,11 +86,34 @@ def degradation(
     return found
 
 
+def write_on_card(source: str, found: Mapping[str, Mapping[str, Evaluation]]) -> None:
+    """Put a model's success in each cell on its card.
+
+    Args:
+        source: the model's name or file, a player in ``found``.
+        found: see :func:`degradation`.
+
+    Raises:
+        ModelError: there is no such model, or its card cannot be written.
+    """
+    figures = {}
+    for cell, results in found.items():
+        one = results[source]
+        low, high = one.interval
+        figures[f"success, {cell}"] = Measured(
+            value=one.rate, low=low, high=high, n=len(one.success), interval="95 % Wilson"
+        )
+    add_figures(find_model(source), figures)
+
+
 def command(
     runs: Annotated[list[str], typer.Argument(help="Folders of runs, or models, all of one task.")],
     starts: Annotated[int, typer.Option("--starts", min=1)] = 200,
     seed: Annotated[int, typer.Option("--seed", min=0, max=MAX_SEED)] = 0,
     cells: Annotated[list[str] | None, typer.Option("--only", help="A cell's name.")] = None,
+    card: Annotated[
+        bool, typer.Option("--card", help="Also put the first one's figures on its card; it must be a model.")
+    ] = False,
     as_json: Json = False,
 ) -> None:
     """Print how often policies, the script and the skill succeed in each cell, with 95 % Wilson intervals.
@@ -91,6 +123,8 @@ def command(
     with one_thread(), errors.status("playing"):
         found = degradation(runs, starts, seed, cells or ())
         task = make_task(trained_policy(runs[0])[0], 1).name
+    if card:
+        write_on_card(runs[0], found)
     if as_json:
         figures = {
             cell: {
