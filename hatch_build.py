@@ -25,6 +25,7 @@ LEFT_OUT = {
     "save_ppo.pt",
     "score_on_defender_grsim_ppo.pt",
     "score_on_goalkeeper_grsim_ppo.pt",
+    "shoot_robust.pt",
     "paper_shots.parquet",
 }
 """Files of ``models`` that are not in a wheel; the manifest there still lists the models among them."""
