@@ -1,9 +1,10 @@
 """One control tick of the league's physics, in any number of arenas.
 
 Bodies are moved and contacts resolved by pymunk or, in many arenas, by the equivalent over arrays
-(:mod:`robobt.sim.contacts.solver`). Everything else is written once, compiled: how robots and ball move
-(:mod:`robobt.sim.motion`), a ball in the air (:mod:`robobt.sim.flight`), dribbler and kicker
-(:mod:`robobt.sim.mouth`), and contacts within a step (:mod:`robobt.sim.sweep`).
+(:mod:`robobt.sim.contacts.solver`). Everything else is written once, compiled: how robots drive
+(:mod:`robobt.world.driving`), how the ball rolls (:mod:`robobt.sim.motion`) and flies
+(:mod:`robobt.sim.flight`), dribbler and kicker (:mod:`robobt.sim.mouth`), and contacts within a step
+(:mod:`robobt.sim.sweep`).
 """
 
 from __future__ import annotations
@@ -25,7 +26,7 @@ from robobt.sim.contacts.solver import ContactArrays, Solving, collide
 from robobt.sim.contacts.touching import Shapes
 from robobt.sim.flight import fly, pass_over
 from robobt.sim.hinge import take_hold, tie
-from robobt.sim.motion import drive, follow, friction
+from robobt.sim.motion import friction
 from robobt.sim.mouth import carry, hold, in_mouth, keeps, kick, let_in
 from robobt.sim.records import (
     ARENA,
@@ -57,6 +58,7 @@ from robobt.sim.shell import drag, meet
 from robobt.sim.sweep import in_a_wall, sweep
 from robobt.sim.wheels import drive_wheels
 from robobt.world.compiled import compiled_inline, compiled_lean
+from robobt.world.driving import drive, follow
 from robobt.world.geometry import FloatArray
 from robobt.world.state import BALL_RADIUS, RECEIVED_HEIGHT, ROBOT_HEIGHT
 

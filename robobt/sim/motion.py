@@ -1,4 +1,4 @@
-"""How a robot follows its command, and how a free ball slides and rolls.
+"""How a free ball slides and rolls.
 
 The ball is modelled as Sumatra does, with the spin as a second velocity: ``spin``
 is the velocity at which the ball would roll without sliding. While the two
@@ -8,78 +8,10 @@ A ball kicked from rest then rolls from ``switch_share`` of its first speed on.
 
 from __future__ import annotations
 
-from math import cos, exp, hypot, sin, sqrt
+from math import hypot
 
-from robobt.sim.records import Body, Command, Followed, Parameters, SimulatedBall
+from robobt.sim.records import Parameters, SimulatedBall
 from robobt.world.compiled import compiled_lean
-from robobt.world.records import Limits
-
-_ARRIVED = 1e-9
-"""Difference from a command below which it is followed exactly [m/s, rad/s]."""
-
-_ROUNDING_SHARE = 1.0 - 1e-9
-"""Tolerance, so that rounding does not exaggerate a change of velocity."""
-
-
-@compiled_lean
-def follow(followed: Followed, command: Command, limits: Limits, dt: float) -> None:
-    """Let a robot's controller follow its command with the lag of each axis."""
-    followed.vx = _nearer(followed.vx, command.vx, limits.lag, dt)
-    followed.vy = _nearer(followed.vy, command.vy, limits.side_lag, dt)
-    followed.omega = _nearer(followed.omega, command.omega, limits.turn_lag, dt)
-
-
-@compiled_lean
-def _nearer(value: float, target: float, lag: float, dt: float) -> float:
-    """Return a value that approaches its target for ``dt`` with a first-order lag."""
-    # It arrives: a speed of 1e-310 has no direction that wheels could take.
-    if lag <= 0.0 or abs(value - target) < _ARRIVED:
-        return target
-    return target + (value - target) * exp(-dt / lag)
-
-
-@compiled_lean
-def reached(followed: Followed, limits: Limits) -> tuple[float, float, float]:
-    """Return what a robot makes of the velocity that it follows: gains and cross-talk of its axes."""
-    vx, vy = followed.vx, followed.vy
-    return (
-        limits.gain * vx + limits.cross_ahead * vy,
-        limits.side_gain * vy + limits.cross_aside * vx,
-        limits.turn_gain * followed.omega,
-    )
-
-
-@compiled_lean
-def drive(robot: Body, followed: Followed, limits: Limits, dt: float) -> None:
-    """Move a robot's velocity towards the one that it follows, within its limits."""
-    c, s = cos(robot.heading), sin(robot.heading)
-    target_vx, target_vy, target_omega = reached(followed, limits)
-    if abs(target_vx) + abs(target_vy) > limits.max_speed:
-        speed = hypot(target_vx, target_vy)
-        if speed > limits.max_speed:
-            target_vx *= limits.max_speed / speed
-            target_vy *= limits.max_speed / speed
-    dx = c * target_vx - s * target_vy - robot.vx
-    dy = s * target_vx + c * target_vy - robot.vy
-    if dx * robot.vx + dy * robot.vy < 0.0:
-        along, across = limits.braking, limits.lateral_braking
-    else:
-        along, across = limits.acceleration, limits.lateral_acceleration
-    # A change within the weaker limit needs no further check.
-    if abs(dx) + abs(dy) > _ROUNDING_SHARE * min(along, across) * dt:
-        step = hypot(dx, dy)
-        ahead = (c * dx + s * dy) / step
-        aside = (c * dy - s * dx) / step
-        # The wheels' limits form an ellipse in the robot's frame.
-        most = dt / sqrt((ahead / along) ** 2 + (aside / across) ** 2)
-        if step > most:
-            dx *= most / step
-            dy *= most / step
-    robot.vx += dx
-    robot.vy += dy
-    turn = min(max(target_omega, -limits.max_turn), limits.max_turn) - robot.omega
-    most = limits.turn_acceleration * dt
-    robot.omega += min(max(turn, -most), most)
 
 
 @compiled_lean

@@ -19,9 +19,9 @@ from __future__ import annotations
 
 from math import copysign, cos, hypot, sin
 
-from robobt.sim.motion import reached
 from robobt.sim.records import Body, Followed, Records, Rim, WheelDrive, Wheels
 from robobt.world.compiled import compiled_lean
+from robobt.world.driving import reached
 from robobt.world.records import Limits
 
 _WHEEL_COUNT = 4
