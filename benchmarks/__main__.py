@@ -26,6 +26,8 @@ COMMANDS = {
     "train": "train:train",
     "degradation": "degradation:command",
     "blind_fields": "blind_fields:blind_fields",
+    "delay_in_play": "delay_in_play:delay_in_play",
+    "late_team": "late_team:late_team",
     "filter": "filter:filter_",
     "chips": "chips:chips",
     "clock": "clock:clock",

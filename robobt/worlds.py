@@ -19,15 +19,21 @@ from robobt.match.results.results import MatchResult
 from robobt.match.runner import Run, run_trials_in
 from robobt.match.scenario.scenario import Scenario, load_scenario
 from robobt.sim import SimSettings, SimWorld, settings_from
+from robobt.world.delay import DelayWatch
+from robobt.world.limits import RobotLimits
+from robobt.world.measured_prediction import MeasuredWorld
 from robobt.world.prediction import predicted
 from robobt.world.protocol import World
+from robobt.world.state import RobotId
 
 
 def sim_world(scenario: Scenario) -> World:
     """Make the built-in simulator with the scenario's field and robots.
 
     Where its vision or commands are late and the scenario does not say otherwise, the
-    frames are predicted to the present (:class:`~robobt.world.prediction.PredictedWorld`).
+    frames are predicted to the present (:class:`~robobt.world.prediction.PredictedWorld`). With
+    ``predict: measured`` they always are, by delays that are measured
+    (:class:`~robobt.world.measured_prediction.MeasuredWorld`).
 
     Raises:
         ScenarioError: the simulator's settings in the scenario are wrong.
@@ -39,7 +45,16 @@ def sim_world(scenario: Scenario) -> World:
     if not scenario.predict:
         return world
     gaps = realism.missing_robot > 0.0
+    if scenario.predict == "measured":
+        return MeasuredWorld(world, _watch_of(settings, limits), gaps)
     return predicted(world, limits.values(), realism.vision_delay, realism.command_delay, gaps)
+
+
+def _watch_of(settings: SimSettings, own: Mapping[RobotId, RobotLimits]) -> DelayWatch:
+    """Return what measures delays, which reckons with the settings' until it has."""
+    realism = settings.realism
+    shown = realism.vision_delay if realism.processing_time is None else realism.processing_time
+    return DelayWatch(settings.limits, own, realism.vision_delay - shown + realism.command_delay)
 
 
 def scenario_settings(scenario: Scenario, preset: str | None = None) -> SimSettings:

@@ -27,6 +27,8 @@ from robobt.world.state import RobotId as RobotId
 from robobt.world.state import RobotState as RobotState
 
 _HOMES = {
+    "Delay": "delay",
+    "DelayWatch": "delay",
     "FloatArray": "geometry",
     "GO_TO_BALL": "features",
     "Point": "geometry",
@@ -39,6 +41,8 @@ _HOMES = {
 }
 
 if TYPE_CHECKING:
+    from robobt.world.delay import Delay as Delay
+    from robobt.world.delay import DelayWatch as DelayWatch
     from robobt.world.features import GO_TO_BALL as GO_TO_BALL
     from robobt.world.geometry import FloatArray as FloatArray
     from robobt.world.geometry import Point as Point

@@ -111,7 +111,7 @@ class PredictedWorld(WrappedWorld):
 
     def observe(self) -> Frame:
         """Return what the world reports, predicted to the moment at which the next command takes effect."""
-        seen = self.world.observe()
+        seen = self._look()
         self._now = seen.time
         own = tuple([self._moved(RobotId(seen.team, robot.id), robot) for robot in seen.own])
         theirs = tuple([self._moved(RobotId(seen.team.other, robot.id), robot) for robot in seen.opponents])
@@ -128,9 +128,13 @@ class PredictedWorld(WrappedWorld):
         self._sent.append(_Sent(self._now, dict(commands)))
         self.world.act(commands)
 
+    def _look(self) -> Frame:
+        """Return what is to be predicted."""
+        return self.world.observe()
+
     def _moved(self, robot: RobotId, seen: RobotState) -> RobotState:
         limits = seen.limits
-        delay = self.command_delay + limits.dead_time
+        delay = self._delay(robot, limits)
         until = self._now + delay
         since = self._now - self.vision_delay
         if self._gaps:
@@ -153,9 +157,17 @@ class PredictedWorld(WrappedWorld):
                 _drive(state, followed, command, min(end, until) - begin)
         return state
 
+    def _delay(self, robot: RobotId, limits: RobotLimits) -> float:  # noqa: ARG002
+        """Return a robot's delay from a command to its effect [s]."""
+        return self.command_delay + limits.dead_time
+
+    def _ball_age(self, robots: tuple[RobotState, ...]) -> float:
+        """Return for how long the ball is predicted: the vision's age and the robots' mean delay [s]."""
+        dead = fmean(robot.limits.dead_time for robot in robots) if robots else 0.0
+        return self.vision_delay + self.command_delay + dead
+
     def _ball(self, seen: Frame, now: tuple[RobotState, ...]) -> BallState:
-        dead = fmean(robot.limits.dead_time for robot in now) if now else 0.0
-        ball, age = seen.ball, self.vision_delay + self.command_delay + dead
+        ball, age = seen.ball, self._ball_age(now)
         both = zip(seen.own + seen.opponents, now, strict=True)
         holding = [(before, after) for before, after in both if after.ball_contact]
         if holding:

@@ -4,13 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Protocol, runtime_checkable
+from typing import TYPE_CHECKING, Protocol, runtime_checkable
 
 from robobt.world.command import RobotCommand
 from robobt.world.detections import Detections
 from robobt.world.game import Team
 from robobt.world.sketch import Sketch
 from robobt.world.state import Frame, RobotId
+
+if TYPE_CHECKING:
+    from robobt.world.delay import Delay
 
 
 @dataclass(slots=True)
@@ -136,6 +139,13 @@ class World(Protocol):
         """Return what cameras saw since this was asked last; empty where that is unknown, or the truth."""
         return ()
 
+    def delays(self) -> Mapping[RobotId, Delay | None]:
+        """Return each commanded robot's whole delay, from a command to its seen effect.
+
+        It is empty where none is measured, and None for a robot of which too little was seen.
+        """
+        return {}
+
     def draw(self, sketch: Sketch) -> None:  # noqa: ARG002
         """Draw this world's further information on ``sketch``, in world coordinates, for viewers."""
         return
@@ -219,6 +229,10 @@ class WrappedWorld(World):
     def detections(self) -> Sequence[Detections]:
         """See :meth:`World.detections`."""
         return self.world.detections()
+
+    def delays(self) -> Mapping[RobotId, Delay | None]:
+        """See :meth:`World.delays`."""
+        return self.world.delays()
 
     def draw(self, sketch: Sketch) -> None:
         """See :meth:`World.draw`."""

@@ -67,9 +67,10 @@ class Scenario(ScenarioPart):
         description="a preset's name, or preset, realism and changed settings; for the world factory",
     )
     period: float = Field(0.025, ge=0.005, le=0.1, description="control period [s]")
-    predict: bool = Field(
+    predict: bool | Literal["measured"] = Field(
         True,
-        description="whether delayed frames are predicted to the present from the commands on their way",
+        description="whether delayed frames are predicted to the present from the commands on their way; "
+        "measured: by delays that are measured while the robots play",
     )
     seed: int = Field(0, ge=0, le=MAX_SEED, description="seed from which every trial's randomness is derived")
     trials: int = Field(1, ge=1, le=MAX_TRIALS, description="default number of trials")

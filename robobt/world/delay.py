@@ -1,0 +1,225 @@
+"""How long each robot takes from a command to its seen effect, measured while it plays.
+
+A robot's motion is predicted under every delay of a grid at once, from the commands that were sent, by the
+laws and limits of the robot (:mod:`robobt.world.delay_hypotheses`), and each prediction is corrected with
+each detection as in a Kalman filter. How well they foresee the next detection tells how likely each delay is
+(a multiple-model estimator). All axes count: ahead, aside and turning.
+
+The delay is what is left beyond the lag, gains and accelerations that the robot's limits have. If the limits
+say less lag than the robot has, the delay holds what is missing, which is what a prediction by these limits
+needs.
+
+No sockets and no clock: all times are arguments.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from math import hypot, inf
+from statistics import median
+from typing import NamedTuple
+
+import numpy as np
+
+from robobt.world.command import RobotCommand
+from robobt.world.delay_evidence import judge
+from robobt.world.delay_hypotheses import HYPOTHESIS, SENDING, SIGHT, advance, nearest, start
+from robobt.world.geometry import FloatArray
+from robobt.world.limits import DEFAULT_LIMITS, RobotLimits
+from robobt.world.records import limits_of
+from robobt.world.state import RobotId
+
+_GRID = np.arange(-0.018, 0.24 + 1e-9, 0.003)
+"""Delays that are compared [s]. A robot seems to obey early where the vision's latency is overrated."""
+
+_LONGEST_GAP = 0.2
+"""After a longer gap a robot counts as seen for the first time [s]."""
+
+_PUT_ELSEWHERE = 0.3
+"""A robot seen this far from where every command would have it was put there, or hit [m]."""
+
+_SURE = 0.8
+"""Share of the belief about its peak from which on a delay counts as measured ..."""
+
+_SHARP = 0.01
+"""... and the largest standard deviation there [s]."""
+
+_NEAR = 0.02
+"""A delay that is known stays so, however much the belief spreads, while its peak is this near [s]."""
+
+_CONFIRMED = 0.2
+"""How long belief has to stay about a new delay until that counts [s]."""
+
+_LEAST_ERROR = 0.0012
+"""Standard error of even the best measurement, because commands take effect in steps [s]."""
+
+_95 = 1.96
+"""Half width of a 95 % interval in standard errors."""
+
+_MOST_SENT = 64
+"""Commands that are remembered: more than are sent in the longest delay of the grid and a gap."""
+
+_DOUBLE = np.dtype(np.float64).itemsize
+
+
+class Delay(NamedTuple):
+    """A measured delay.
+
+    Attributes:
+        seconds: from sending a command to its seen effect [s].
+        error: its standard error [s].
+    """
+
+    seconds: float
+    error: float
+
+    @property
+    def low(self) -> float:
+        """Lower end of the 95 % interval [s]."""
+        return self.seconds - _95 * self.error
+
+    @property
+    def high(self) -> float:
+        """Upper end of the 95 % interval [s]."""
+        return self.seconds + _95 * self.error
+
+
+class DelayWatch:
+    """Measures the delay of each robot that is commanded and seen.
+
+    Args:
+        limits: of robots that are not named in ``own``.
+        own: limits of individual robots.
+        nominal: delay to expect until one is measured, beside the robots' dead times [s].
+    """
+
+    def __init__(
+        self,
+        limits: RobotLimits = DEFAULT_LIMITS,
+        own: Mapping[RobotId, RobotLimits] | None = None,
+        nominal: float = 0.0,
+    ) -> None:
+        self._limits, self._own, self._nominal = limits, dict(own or {}), nominal
+        self._robots: dict[RobotId, _RobotWatch] = {}
+        # What has to be compiled is so before the match, not in it.
+        probe = _RobotWatch(limits)
+        probe.sent(0.0, RobotCommand())
+        for time in (0.0, 0.01):
+            probe.see(time, 0.0, 0.0, 0.0)
+
+    def sent(self, time: float, commands: Mapping[RobotId, RobotCommand]) -> None:
+        """Record commands that are sent.
+
+        Args:
+            time: when, on the clock of the detections [s].
+            commands: by robot.
+        """
+        for robot, command in commands.items():
+            watch = self._robots.get(robot)
+            if watch is None:
+                watch = self._robots[robot] = _RobotWatch(self._limits_of(robot))
+            watch.sent(time, command)
+
+    def see(self, robot: RobotId, time: float, x: float, y: float, heading: float) -> None:
+        """Use a detection.
+
+        Args:
+            robot: which was seen; one that was never commanded is ignored.
+            time: of the capture, as far as it is known [s].
+            x: its x coordinate [m].
+            y: its y coordinate [m].
+            heading: its heading [rad].
+        """
+        watch = self._robots.get(robot)
+        if watch is not None:
+            watch.see(time, x, y, heading)
+
+    def of(self, robot: RobotId) -> Delay | None:
+        """Return a robot's delay; None while too little was seen.
+
+        Args:
+            robot: which.
+        """
+        watch = self._robots.get(robot)
+        return None if watch is None else watch.delay
+
+    def expected(self, robot: RobotId) -> float:
+        """Return the delay to reckon with [s].
+
+        It is the measured one. For a robot that was not seen enough it is the nominal one, and as much more
+        as is usual among the robots that were.
+
+        Args:
+            robot: which.
+        """
+        known = self.of(robot)
+        if known is not None:
+            return known.seconds
+        others = self.measured().items()
+        excess = [delay.seconds - self._expected(other) for other, delay in others if delay is not None]
+        return self._expected(robot) + (median(excess) if excess else 0.0)
+
+    def measured(self) -> dict[RobotId, Delay | None]:
+        """Return the delay of each robot that was commanded; None while too little was seen."""
+        return {robot: watch.delay for robot, watch in sorted(self._robots.items())}
+
+    def interrupt(self) -> None:
+        """Forget where robots are, as after they were placed or the clock jumped; keep their delays."""
+        for watch in self._robots.values():
+            watch.interrupt()
+
+    def _limits_of(self, robot: RobotId) -> RobotLimits:
+        return self._own.get(robot, self._limits)
+
+    def _expected(self, robot: RobotId) -> float:
+        return self._nominal + self._limits_of(robot).dead_time
+
+
+class _RobotWatch:
+    """Measures one robot's delay; what was measured last stays known while the robot stands."""
+
+    def __init__(self, limits: RobotLimits) -> None:
+        self.delay: Delay | None = None
+        self._limits: FloatArray = limits_of(limits)
+        self._rows: FloatArray = np.zeros((len(_GRID), HYPOTHESIS.itemsize // _DOUBLE))
+        hypotheses = self._rows.view(HYPOTHESIS)[:, 0]
+        hypotheses["delay"] = _GRID
+        hypotheses["misfit"] = hypotheses["turn_misfit"] = 1.0
+        self._seen: FloatArray = np.zeros(SIGHT.itemsize // _DOUBLE)
+        self._sendings: FloatArray = np.zeros((2 * _MOST_SENT, SENDING.itemsize // _DOUBLE))
+        self._first = self._end = 0
+        self._time = self._candidate_since = -inf
+        self._candidate = inf
+
+    def sent(self, time: float, command: RobotCommand) -> None:
+        if self._end == len(self._sendings):
+            self._sendings[:_MOST_SENT] = self._sendings[-_MOST_SENT:]
+            self._first, self._end = max(0, self._first - _MOST_SENT), _MOST_SENT
+        self._sendings[self._end] = command.vx, command.vy, command.omega, time
+        self._end += 1
+        self._first = max(self._first, self._end - _MOST_SENT)
+
+    def interrupt(self) -> None:
+        self._time = -inf
+        self._first = self._end
+
+    def see(self, time: float, x: float, y: float, heading: float) -> None:
+        before, seen = self._time, self._seen
+        if 0.0 >= time - before > -_LONGEST_GAP:
+            return
+        seen[:3] = x, y, heading
+        self._time = time
+        if not 0.0 < time - before < _LONGEST_GAP:
+            start(self._rows, seen)
+            return
+        advance(self._rows, self._sendings[self._first : self._end], self._limits, before, time)
+        if nearest(self._rows, seen) > _PUT_ELSEWHERE:
+            start(self._rows, seen)
+            return
+        delay, deviation, share = judge(self._rows, seen, time - before)
+        sure = share > _SURE and deviation < _SHARP
+        known = self.delay is not None and abs(delay - self.delay.seconds) < _NEAR
+        if not sure or abs(delay - self._candidate) > _NEAR:
+            self._candidate, self._candidate_since = delay, time
+        if known or (sure and time - self._candidate_since > _CONFIRMED):
+            self.delay = Delay(delay, hypot(deviation, _LEAST_ERROR))
