@@ -56,6 +56,10 @@ class Connection(Settings):
     latency: float = Field(
         0.0, ge=0, le=0.5, description="latency of the vision beyond what its timestamps show [s]"
     )
+    delay: Literal["known", "measured"] = Field(
+        "known",
+        description="the robots' delay: as the settings of the physics have it, or measured while they play",
+    )
     speed: float = Field(1.0, ge=0.05, le=20, description="simulated time over real time")
 
     @property

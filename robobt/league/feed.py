@@ -85,7 +85,12 @@ class Feed:
         self.known = known or KnownField(connection.speed)
         self.seen: deque[CameraFrame] = deque(maxlen=_MOST_SEEN)
         self._expected = field if connection.geometry == "scenario" else None
-        self.filter = VisionFilter(self.known.field or field or DIVISION_B, settings, limits)
+        measured = connection.delay == "measured"
+        self.filter = VisionFilter(self.known.field or field or DIVISION_B, settings, limits, measured)
+        if self.known.delays is None:
+            self.known.delays = self.filter.delays
+        self.filter.delays = self.known.delays
+        self.filter.delays.interrupt()
         self.frames = 0
         self.fresh = False
         self.arrived = self.heard = -1e9
@@ -130,6 +135,11 @@ class Feed:
         self._now += (at - self._now_at) * self.rate
         self._now_at = at
         return self._now
+
+    @property
+    def age(self) -> float:
+        """Age of the newest picture at its arrival, as far as it is known [s]."""
+        return self._delay + self.connection.latency
 
     def vision_now(self) -> float:
         """Return the present time on the vision's clock [s].

@@ -6,6 +6,7 @@ import logging
 
 from robobt.league.estimate.clocks import FieldClock
 from robobt.league.wire.notices import Notices
+from robobt.world.delay import DelayWatch
 from robobt.world.field import FieldGeometry
 
 _log = logging.getLogger(__name__)
@@ -21,12 +22,18 @@ class KnownField(Notices):
     """Knowledge of a field from one match to the next.
 
     ``speed`` is the rate that its clock is expected to have [s of the field per s].
+
+    Attributes:
+        clock: how the field's clock runs.
+        field: dimensions that the vision reports, None before it has.
+        delays: what measures the robots' delays, None before a world was made.
     """
 
     def __init__(self, speed: float = 1.0) -> None:
         super().__init__()
         self.clock = FieldClock(speed)
         self.field: FieldGeometry | None = None
+        self.delays: DelayWatch | None = None
         self._speed = speed
         self._since: tuple[float, float] | None = None
 

@@ -24,6 +24,7 @@ from robobt.match.referee.events import RefereeEvent
 from robobt.signals import uninterrupted
 from robobt.sim.settings import SimSettings
 from robobt.world.command import KickTrigger, RobotCommand
+from robobt.world.delay import Delay
 from robobt.world.detections import Detections
 from robobt.world.field import FieldGeometry
 from robobt.world.limits import RobotLimits
@@ -218,6 +219,14 @@ class LeagueWorld(World, Closing):
         if self.connection.places:
             self._link.place([], self._placer.place_ball(x, y))
 
+    def delays(self) -> Mapping[RobotId, Delay | None]:
+        """See :meth:`robobt.world.World.delays`; they are measured whether or not frames reckon with them."""
+        age = self._feed.age
+        return {
+            robot: None if it is None else Delay(age + it.seconds, it.error)
+            for robot, it in self._feed.filter.delays.measured().items()
+        }
+
     def draw(self, sketch: Sketch) -> None:
         """See :meth:`robobt.world.World.draw`: what the cameras reported last, and how sure the filter is."""
         self._feed.filter.draw(sketch)
@@ -294,7 +303,7 @@ class LeagueWorld(World, Closing):
         self._link.send(commands, now)
         # The age of the vision is not in it, and dead times the filter adds.
         effect = self.settings.realism.command_delay + self.settings.limits.reaction
-        self._feed.filter.sent(self._feed.vision_now() + effect, commands)
+        self._feed.filter.sent(self._feed.vision_now(), commands, effect)
         self.send_times.append(self._clock())
         self._sent, self._sent_at = commands, now
 

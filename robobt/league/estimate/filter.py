@@ -27,6 +27,7 @@ from robobt.league.wire.geometry import CameraPlace
 from robobt.league.wire.vision import BallDetection, CameraFrame, RobotDetection
 from robobt.sim.settings import SimSettings
 from robobt.world.command import RobotCommand
+from robobt.world.delay import DelayWatch
 from robobt.world.field import FieldGeometry
 from robobt.world.game import Team
 from robobt.world.limits import RobotLimits
@@ -72,6 +73,9 @@ _COMMAND_MEMORY = 0.5
 _JUMP_BACK, _JUMP_AHEAD = 0.5, 5.0
 """A source whose capture times jump further was restarted [s]."""
 
+_OTHER_CAMERA = 0.05
+"""After this time without a camera's detection another camera's is used for measuring delays [s]."""
+
 _CAMERA_LATENESS = 0.002
 """A camera whose frame is this much older than the newest is late [s]."""
 
@@ -83,9 +87,11 @@ class VisionFilter:
     """Merges the cameras' detections and predicts from them.
 
     ``field`` may be replaced when the vision reports another; ``settings`` are the physics to expect,
-    ``limits`` those of individual robots, where they differ.
+    ``limits`` those of individual robots, where they differ. ``measured`` is whether predictions reckon with
+    the delays that are measured, instead of those of the settings.
 
     Attributes:
+        delays: measures the robots' delays.
         cameras: where those are, by number; chips are seen by these only.
         captured: capture time of the newest frame, None before the first [s].
         restarts: how often the source was restarted.
@@ -98,12 +104,16 @@ class VisionFilter:
         field: FieldGeometry,
         settings: SimSettings | None = None,
         limits: Mapping[RobotId, RobotLimits] | None = None,
+        measured: bool = False,
     ) -> None:
         self.field = field
         self.settings = settings or SimSettings()
+        self._measured = measured
         self._ball_model = self.settings.ball.model
         self._limits = dict(limits or {})
         realism = self.settings.realism
+        nominal = realism.command_delay + self.settings.limits.reaction
+        self.delays = DelayWatch(self.settings.limits, self._limits, nominal)
         robot_noise = max(realism.robot_noise, _MIN_ROBOT_NOISE)
         self._robot_noises = robot_noise, max(realism.heading_noise, _MIN_HEADING_NOISE)
         self._ball_noise = max(realism.ball_noise, _MIN_BALL_NOISE)
@@ -131,15 +141,27 @@ class VisionFilter:
         self._ball_rivals = Rivals(_OUTLIER_CONFIRMATIONS, _BALL_GATE, _MAX_BALL_SPEED)
         self._robot_rivals: dict[RobotId, Rivals] = {}
         self._sent: dict[RobotId, SentCommands] = {}
+        self._watched: dict[RobotId, tuple[int, float]] = {}
+        self.delays.interrupt()
 
-    def sent(self, time: float, commands: Mapping[RobotId, RobotCommand]) -> None:
-        """Record commands that reach the robots at ``time``, for predictions.
+    def sent(self, time: float, commands: Mapping[RobotId, RobotCommand], link_delay: float = 0.0) -> None:
+        """Record commands, for predictions.
 
-        They take effect after each robot's own dead time.
+        Args:
+            time: when they are sent [s].
+            commands: by robot.
+            link_delay: from there until they reach the robots [s]. They take effect after each robot's own
+                dead time; or after the delay that was measured, in place of the two.
         """
+        self.delays.sent(time, commands)
         for robot, command in commands.items():
             queue = self._sent.setdefault(robot, [])
-            queue.append(Sent(time + self._limits_of(robot).dead_time, command))
+            if self._measured:
+                since = time + self.delays.expected(robot)
+                # Where a delay has become shorter, commands on their way still come in their order.
+                queue.append(Sent(max(since, queue[-1].since) if queue else since, command))
+            else:
+                queue.append(Sent(time + link_delay + self._limits_of(robot).dead_time, command))
             # The last command before the horizon has to stay: it is still in force.
             while len(queue) > 1 and queue[1].since < time - _COMMAND_MEMORY:
                 queue.pop(0)
@@ -221,9 +243,9 @@ class VisionFilter:
         Args:
             time: on the vision's clock [s].
             to_effect: whether to predict on to when a command that reaches a robot then moves it: each
-                commanded robot by its dead time, all else by the mean of these.
+                commanded robot by its dead time, or by its measured delay, all else by the mean of these.
         """
-        dead = {robot: self._limits_of(robot).dead_time for robot in self._sent} if to_effect else {}
+        dead = {robot: self._effect_after(robot) for robot in self._sent} if to_effect else {}
         others = fmean(dead.values()) if dead else 0.0
         motions = {
             robot: self._robot_at(robot, time + dead.get(robot, others)) for robot in sorted(self._robots)
@@ -296,8 +318,20 @@ class VisionFilter:
         track.correct(own.x - m.vx * late, own.y - m.vy * late, camera)
         if own.heading is not None:
             track.correct_heading(own.heading, camera, own.confidence)
+            self._measure(own.robot, own.x, own.y, own.heading, time, camera)
         rivals.saw_track(camera, own.confidence, time)
         return [seen for gap, seen in deviations if seen is not own and gap > gate]
+
+    def _measure(self, robot: RobotId, x: float, y: float, heading: float, time: float, camera: int) -> None:
+        """Compare where a robot is seen with its commands; by one camera, as others see it a little aside."""
+        before, seen = self._watched.get(robot, (camera, time))
+        if before == camera or time - seen > _OTHER_CAMERA:
+            self._watched[robot] = camera, time
+            self.delays.see(robot, time, x, y, heading)
+
+    def _effect_after(self, robot: RobotId) -> float:
+        """Return after what time a command that is recorded as of now moves a robot [s]."""
+        return self.delays.expected(robot) if self._measured else self._limits_of(robot).dead_time
 
     def _occupied(self, seen: RobotDetection) -> bool:
         """Return whether another robot of the team is tracked where one is seen: the number may be wrong."""
