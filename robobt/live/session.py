@@ -25,6 +25,9 @@ LOOK = 1.5
 LATE = 0.005
 """Delay from which a tick counts as late [s]."""
 
+_TELL_DELAYS = 60
+"""Number of ticks after which measured delays are sent again."""
+
 _GIVE_UP = 0.25
 """Delay from which a match no longer tries to catch up [s]."""
 
@@ -67,6 +70,7 @@ class Live:
         self._known = 0
         # Whether every tick is to be attended to, and from one to the next [s].
         self._attentive, self._period = True, 0.0
+        self._until_delays = 0
         self.ticks = self.late = 0
 
     def play_on(self, make: Callable[[int], MatchLoop]) -> None:
@@ -131,7 +135,7 @@ class Live:
         self._show(match)
         self._reset = None
         self._attentive, self._paced = True, match.world.paced
-        self._controls.tell(over=None, countdown=None)
+        self._controls.tell(over=None, countdown=None, delays=None)
         self._due = self._clock()
         return hands
 
@@ -150,6 +154,10 @@ class Live:
         if not match.tick():
             self._controls.tell(over=match.outcome and match.outcome.value)
             return False
+        self._until_delays -= 1
+        if self._until_delays <= 0:
+            self._until_delays = _TELL_DELAYS
+            self._tell_delays(match)
         self._pace()
         return True
 
@@ -237,6 +245,16 @@ class Live:
         if len(self._named) != self._known:
             self._known = len(self._named)
             self._server.tell(layers=sorted(self._named))
+
+    def _tell_delays(self, match: MatchLoop) -> None:
+        """Send each robot's delay and half its 95 % interval [s], where delays are measured."""
+        delays = match.world.delays()
+        if delays:
+            told = {
+                str(robot): None if it is None else [round(it.seconds, 4), round(it.high - it.seconds, 4)]
+                for robot, it in delays.items()
+            }
+            self._server.tell(delays=told)
 
     def _do(self, act: Act, arrived: float, match: MatchLoop) -> None:
         self._attentive = True

@@ -29,8 +29,8 @@ from robobt.world.limits import DEFAULT_LIMITS, RobotLimits
 from robobt.world.records import limits_of
 from robobt.world.state import RobotId
 
-_GRID = np.arange(-0.018, 0.24 + 1e-9, 0.003)
-"""Delays that are compared [s]. A robot seems to obey early where the vision's latency is overrated."""
+_GRID = np.arange(0.0, 0.24 + 1e-9, 0.003)
+"""Delays that are compared [s]."""
 
 _LONGEST_GAP = 0.2
 """After a longer gap a robot counts as seen for the first time [s]."""

@@ -63,6 +63,18 @@ def test_the_page_shows_the_match_as_it_goes_on(live: Page, session: Session) ->
     live.wait("return document.querySelector('#tree .row[data-s=R]') !== null")
 
 
+def test_the_chosen_robots_delay_is_shown_where_it_is_measured(live: Page, session: Session) -> None:
+    name = live.js("return window.robobt.match.robots[0].name")
+    live.js("document.querySelector('.pick').click()")
+    shown = "return [document.getElementById('delay').hidden, document.getElementById('f-delay').textContent]"
+    assert live.js(shown)[0]
+    session.server.tell(delays={name: [0.1, 0.0042]})
+    live.wait(f"const [hidden, text] = (() => {{ {shown} }})(); return !hidden && text === '100 ± 4 ms'")
+    session.server.tell(delays={name: None})
+    live.wait(f"const [hidden, text] = (() => {{ {shown} }})(); return !hidden && text === 'not seen enough'")
+    session.server.tell(delays=None)
+
+
 def test_a_page_says_that_nothing_is_played_yet(page: Page) -> None:
     with Server() as server:
         page.open(server.url)

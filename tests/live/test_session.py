@@ -104,6 +104,20 @@ def test_a_field_waits_for_nobody(server: Server, scenario: Scenario) -> None:
     assert match.result().trace == MatchLoop(scenario, 3, sim_world).play().trace
 
 
+def test_each_robots_delay_is_sent_where_it_is_measured(server: Server, scenario: Scenario) -> None:
+    clock = Clock()
+    live = Live(server, clock=clock, sleep=clock.sleep)
+    live.play(MatchLoop(scenario, 3, sim_world))
+    assert server.audience.state["delays"] is None
+    measured = scenario.model_copy(update={"predict": "measured"}).lasting(4.0)
+    live.play(MatchLoop(measured, 3, sim_world))
+    delays = server.audience.state["delays"]
+    assert set(delays) == {"blue 0", "yellow 0"}
+    seconds, half = delays["blue 0"]
+    assert abs(seconds) < 0.005
+    assert 0.0 < half < 0.02
+
+
 @pytest.mark.slow
 def test_viewers_leave_a_match_of_six_a_side_unharmed() -> None:
     figures = bench_live(load_scenario("team_v_baseline"), sim_world, 90.0, viewers=20)

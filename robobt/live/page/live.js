@@ -77,6 +77,7 @@ const count = make("div", "count");
 count.setAttribute("role", "status");
 document.querySelector(".stage").append(count);
 const showState = () => {
+  state.delays = now.delays;
   put(count, now.countdown || ""); count.classList.toggle("words", (now.countdown || "").length > 2);
   showHead(); showSteering(now); showDriving(now); offerLayers();
   nowButton.hidden = state.follow;

@@ -82,6 +82,9 @@ export const showPanel = frame => {
   put($("f-heading"), here ? Math.round((turn / 1000 * 180 / Math.PI + (side < 0 ? 360 : 180)) % 360 - 180) + "°" : "–");
   put($("f-ball"), (flags & 1 ? "has it" : "away") + (flags & 4 ? ", kicks" : flags & 2 ? ", dribbles" : ""));
   $("f-ball").classList.toggle("on", Boolean(flags & 1));
+  const delay = (state.delays || {})[robot.name];
+  $("delay").hidden = delay === undefined;
+  put($("f-delay"), delay ? `${Math.round(1000 * delay[0])} ± ${Math.max(1, Math.round(1000 * delay[1]))} ms` : "not seen enough");
   put($("wrote"), wroteOf(robot, frame));
   const game = valueAt(match.games, frame, null), keeps = game && game.teams.some(({ team, keeper }) => team === robot.team && keeper === robot.number);
   put($("who-play"), [robot.play, keeps && "goalkeeper"].filter(Boolean).join(", "));
