@@ -56,7 +56,8 @@ def observations_of(recording: Recording) -> Observations:
     """Return what a recording holds of what cameras saw and robots were sent.
 
     Raises:
-        NothingToIdentifyError: it holds no detections, and its frames are predicted or filtered.
+        NothingToIdentifyError: what cameras saw is unknown: the recording holds no detections, and the trees
+            were shown predicted or filtered positions.
     """
     header, times = recording.header, recording.times
     robots = tuple(robot.id for robot in header.robots)
@@ -71,12 +72,11 @@ def observations_of(recording: Recording) -> Observations:
             seen.times, seen.cameras, seen.ball.astype(np.float64), seen.robots.astype(np.float64)
         )
         return _observations(header.field, robots, pictures, times, commands, seen.ages)
-    if recording.observed is not None:
+    if recording.observed is not None and not header.cameras_show_truth:
         raise NothingToIdentifyError(
-            f"{recording.path}: holds no detections of cameras; record the match again with this version of "
-            "robobt"
+            f"{recording.path}: does not say what cameras saw, only what trees were shown; record the match "
+            "again with this version of robobt"
         )
-    # Cameras that show the truth.
     ball, poses = recording.truth.ball[:, :2], recording.truth.robots[:, :, :3]
     return Observations(
         header.field, robots, times, ball.astype(np.float64), poses.astype(np.float64), times, commands

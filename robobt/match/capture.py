@@ -123,6 +123,7 @@ class MatchCapture:
             field=first.field,
             ball_model=first.ball_model,
             played=self._scenario.model_dump(mode="json"),
+            cameras_show_truth=self._world.cameras_show_truth,
             robots=tuple(
                 RecordedRobot(
                     team=robot.team,

@@ -102,12 +102,12 @@ class SimWorld(World):
     @property
     def shows_truth(self) -> bool:
         """Whether :meth:`observe` always returns what :meth:`truth` does."""
-        return not (self._reports or self.settings.realism.response_loss > 0.0)
+        return self.cameras_show_truth and self.settings.realism.response_loss == 0.0
 
     @property
-    def _reports(self) -> bool:
-        """Whether the cameras' report is anything but the truth."""
-        return self._delayed or self._noisy or self._lossy or self._sight is not None
+    def cameras_show_truth(self) -> bool:
+        """See :attr:`robobt.world.World.cameras_show_truth`."""
+        return not (self._delayed or self._noisy or self._lossy or self._sight is not None)
 
     def observe(self) -> Frame:
         """Return what the cameras report: late, shifted, noisy and with gaps, as the settings define.
@@ -157,14 +157,14 @@ class SimWorld(World):
         if self._delayed:
             for rows in self._arenas.history[:, 0]:
                 self._past.append(rows.copy())
-        if self._reports:
+        if not self.cameras_show_truth:
             self._report = self._perceive()
         if self.settings.realism.response_loss > 0.0:
             self._felt = self._responses()
 
     def detections(self) -> list[Detections]:
         """See :meth:`robobt.world.World.detections`; the cameras together, at the time that they claim."""
-        if not self._reports:
+        if self.cameras_show_truth:
             return []
         realism = self.settings.realism
         age = realism.vision_delay if realism.processing_time is None else realism.processing_time

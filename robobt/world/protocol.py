@@ -156,6 +156,11 @@ class World(Protocol):
         return False
 
     @property
+    def cameras_show_truth(self) -> bool:
+        """Whether cameras would show what :meth:`truth` returns, whatever :meth:`observe` makes of it."""
+        return False
+
+    @property
     def refereed(self) -> bool:
         """Whether a game controller decides the game that the frames hold."""
         return False
@@ -242,6 +247,11 @@ class WrappedWorld(World):
     def shows_truth(self) -> bool:
         """See :attr:`World.shows_truth`."""
         return self.world.shows_truth
+
+    @property
+    def cameras_show_truth(self) -> bool:
+        """See :attr:`World.cameras_show_truth`."""
+        return self.world.cameras_show_truth
 
     @property
     def refereed(self) -> bool:

@@ -58,7 +58,7 @@ def test_a_recording_holds_what_was_seen_and_sent(recording: Path) -> None:
 def test_a_recording_without_detections_is_refused(recording: Path) -> None:
     old = load_recording(recording)
     old.pictures = None
-    with pytest.raises(NothingToIdentifyError, match="holds no detections"):
+    with pytest.raises(NothingToIdentifyError, match="does not say what cameras saw"):
         observations_of(old)
 
 
@@ -157,3 +157,19 @@ def test_a_recording_without_realism_shows_what_is(tmp_path: Path) -> None:
     )
     assert len(seen) > 50
     assert not np.isnan(seen.poses).any()
+
+
+@pytest.mark.parametrize("name", ["real_2024", "raven_4"])
+def test_without_simulated_cameras_a_late_preset_is_identified_from_the_truth(
+    name: str, tmp_path: Path
+) -> None:
+    # Its robots obey late, so that the trees are shown a prediction, but the cameras show what is.
+    scenario = load_scenario("three_v_three").lasting(4.0)
+    changed = scenario.model_copy(update={"simulator": {"preset": name}})
+    recording = load_recording(played(changed, tmp_path / "late.robobt.arrows"))
+    assert recording.observed is not None
+    assert np.abs(recording.observed.robots - recording.truth.robots)[..., :2].max() > 0.005
+    seen = observations_of(recording)
+    assert seen.poses == pytest.approx(recording.truth.robots[:, :, :3], abs=1e-6)
+    limits = preset(name).limits
+    assert identify(seen).delay.value == pytest.approx(limits.dead_time, abs=0.01)

@@ -106,6 +106,9 @@ class RecordingHeader(Settings):
     period: float = Field(gt=0, le=10, description="control period [s]")
     field: FieldGeometry
     ball_model: BallModel = Field(DEFAULT_BALL, description="the ball model that trees see")
+    cameras_show_truth: bool = Field(
+        False, description="whether what cameras saw is the truth, even where trees were shown a prediction"
+    )
     teams: dict[Team, str] = Field(default_factory=dict, description="names of the teams")
     robots: tuple[RecordedRobot, ...] = Field((), max_length=64)
     robobt: str = Field(__version__, description="version of robobt that recorded it")

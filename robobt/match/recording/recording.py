@@ -85,7 +85,7 @@ class Recording:
         touches: the robot that touched the ball last, whenever it changed.
         events: events in the order of recording.
         outcome: the outcome of the match, None if its recorder was not closed.
-        pictures: what cameras saw; None where that is not known, or the truth.
+        pictures: what cameras saw; None where that is not known, or the truth (see the header).
     """
 
     path: Path
