@@ -15,7 +15,7 @@ from robobt.live.messages import Act, Pause, Reset, Speed, Step
 from robobt.live.server import Server
 from robobt.live.stream import Stream
 from robobt.match.loop import MatchLoop
-from robobt.match.recording.capture import Capture, CapturedTick
+from robobt.match.recording.capture import Capture
 from robobt.match.results.results import MatchResult
 from robobt.signals import check
 
@@ -133,6 +133,7 @@ class Live:
         gc.freeze()
         self._hands = hands = Hands(match, self._server, self._clock)
         self._show(match)
+        self._stand(match)
         self._reset = None
         self._attentive, self._paced = True, match.world.paced
         self._controls.tell(over=None, countdown=None, delays=None)
@@ -162,14 +163,11 @@ class Live:
         return True
 
     def count_down(self, match: MatchLoop, seconds: float) -> None:
-        """Show the start of ``match`` and count down ``seconds`` once somebody is there to drive.
+        """Count down ``seconds`` to the start of ``match`` once somebody is there to drive.
 
         It starts over whenever nobody is.
         """
         assert self._hands is not None
-        assert self._stream is not None
-        truth = match.world.truth().packed()
-        self._stream.take(CapturedTick(0.0, truth, truth, {}, [], [], {}))
         end = None
         while not self._ended:
             self._idle(match)
@@ -236,6 +234,11 @@ class Live:
             self._layers, self._named, self._known = None, capture.layers, 0
             self._server.show(self._stream)
 
+    def _stand(self, match: MatchLoop) -> None:
+        """Show where things are until the next tick."""
+        assert self._stream is not None
+        self._stream.stand(match.world.truth().packed())
+
     def _draw(self) -> None:
         """Let skills draw the layers that viewers watch."""
         assert self._capture is not None
@@ -272,6 +275,8 @@ class Live:
                 self._hands.do(act, self._clock(), arrived)
                 # Another tree may have begun another capture.
                 self._show(match, self._stream)
+                if self._controls.paused or match.outcome is not None:
+                    self._stand(match)
 
     def _pace(self) -> None:
         """Wait for the time of the next tick."""

@@ -25,7 +25,7 @@ from robobt.live.present import Present
 from robobt.match.recording import Recording, RecordingHeader, RobotFlag
 from robobt.match.recording.capture import Capture, CapturedTick
 from robobt.match.recording.encoder import EncodedTicks, TickEncoder
-from robobt.match.recording.numbers import COMMAND_NUMBERS, numbers_of
+from robobt.match.recording.numbers import COMMAND_NUMBERS, TickNumbers, numbers_of
 from robobt.match.recording.reader import poses_of
 from robobt.match.recording.recording import Timeline
 from robobt.match.recording.stream import new_stream
@@ -85,6 +85,7 @@ class Stream:
         header: the constant part, as sent to the page.
         first: number of the oldest message that is kept.
         end: number of the next message.
+        moves: number of times that :meth:`stand` has changed the present since the last tick.
     """
 
     def __init__(self, source: Capture | RecordingHeader, after: Stream | None = None) -> None:
@@ -99,10 +100,14 @@ class Stream:
         self._encoded: deque[tuple[float, EncodedTicks]] = deque(maxlen=_MOST_WAITING_TICKS)
         self._segments: deque[_Segment] = deque()
         self._last: EncodedTicks | None = None if after is None else after._last
+        self._numbers = TickNumbers([robot.id for robot in self._header.robots])
+        # Where things stand before the next tick: as the match told it, and encoded.
+        self._told: bytes | None = None
+        self._standing: pa.Array | None = None if after is None else after._standing
         if after is not None:
             self._present.follow(after._present.lasting)
         self.header: dict[str, Any] = {"version": PROTOCOL_VERSION, **header_data(self._header, paths=True)}
-        self.first = self.end = 0
+        self.first = self.end = self.moves = 0
         # When the newest tick came, and how long after the one before [s].
         self._came = self._gap = 0.0
 
@@ -113,7 +118,16 @@ class Stream:
 
     def take(self, tick: CapturedTick) -> None:
         """Take the next tick; called by the match."""
+        self._told = None
         self._waiting.append((time.time(), tick))
+
+    def stand(self, truth: bytes) -> None:
+        """Show where things are until the next tick, which is no tick itself; called by the match.
+
+        Args:
+            truth: the true frame, packed from blue's side.
+        """
+        self._told = truth
 
     def add(self, ticks: EncodedTicks) -> None:
         """Add ticks that are already encoded."""
@@ -128,7 +142,8 @@ class Stream:
         """Encode the next ticks that wait as one message; whether there were any."""
         found = self._next()
         if found is None:
-            return False
+            return self._stand()
+        self._standing, self.moves = None, 0
         at, ticks = found
         self._gap, self._came = (at - self._came) / len(ticks.times), at
         self._present.follow(ticks.changes[0])
@@ -145,6 +160,15 @@ class Stream:
         segment.size += len(message)
         self._last = ticks
         self.end += 1
+        return True
+
+    def _stand(self) -> bool:
+        """Encode where things stand, if the match has told that anew."""
+        told, self._told = self._told, None
+        if told is None:
+            return False
+        self._standing = self._numbers.poses([told])
+        self.moves += 1
         return True
 
     def _next(self) -> tuple[float, EncodedTicks] | None:
@@ -171,12 +195,16 @@ class Stream:
         return found, start + len(found)
 
     def present(self) -> bytes | None:
-        """Return the present as a whole chunk of one tick; None before the first."""
-        last = self._last
-        if last is None:
+        """Return the present as a whole chunk of one tick; None before anything can be shown."""
+        last, standing = self._last, self._standing
+        if last is not None:
+            times, commands = last.times[-1:], last.commands[-1:]
+            truth = last.truth[-1:] if standing is None else standing
+        elif standing is not None:
+            times, commands, truth = [0.0], self._numbers.commands([{}]), standing
+        else:
             return None
-        truth, commands = last.truth[-1:], last.commands[-1:]
-        tick = EncodedTicks(last.times[-1:], truth, truth, commands, [self._present.changes()])
+        tick = EncodedTicks(times, truth, truth, commands, [self._present.changes()])
         return _message(tick, self._header, ChunkEncoder(self._header), True, time.time())
 
     def recording(self) -> bytes:

@@ -42,7 +42,7 @@ class Viewer:
         self.refused = self.skipped = 0
         self._stream: Stream | None = None
         self._told: dict[str, Any] = {}
-        self._next = 0
+        self._next = self._moves = 0
         # Numbers of the next message of the past and of the one after its last; the page asks for it.
         self._past, self._past_end = 0, 0
         self._joined = 0
@@ -62,6 +62,8 @@ class Viewer:
             await self._json({"kind": "state", **state})
         if self._next < stream.end:
             await self._send_new(stream)
+        elif self._moves != stream.moves:
+            await self._send_present(stream)
         if self._past < self._past_end:
             found, self._past = stream.messages(self._past, _PAST_AT_ONCE)
             # Where the viewer came in, its own present begins.
@@ -75,6 +77,10 @@ class Viewer:
         self._past = self._past_end = 0
         self._next = self._joined = stream.end
         await self._json({"kind": "hello", "past": stream.end > stream.first, **stream.header})
+        await self._send_present(stream)
+
+    async def _send_present(self, stream: Stream) -> None:
+        self._moves = stream.moves
         present = stream.present()
         if present is not None:
             await self._chunks("now", [present])

@@ -1,10 +1,12 @@
 """The pace at which a match is shown, and whose wishes it follows."""
 
+import base64
 import threading
 from collections.abc import Iterator
 from pathlib import Path
 from time import perf_counter
 
+import numpy as np
 import pytest
 
 from benchmarks.live import bench_live
@@ -21,7 +23,7 @@ from robobt.skills.aim.raters.shot_predictor import shot_predictor
 from robobt.world.features import SHOT_SCENE
 from robobt.world.protocol import WrappedWorld
 from robobt.worlds import sim_world
-from tests.live.playing import Client
+from tests.live.playing import Client, playing
 from tests.waiting import soon
 
 pytestmark = pytest.mark.integration
@@ -116,6 +118,32 @@ def test_each_robots_delay_is_sent_where_it_is_measured(server: Server, scenario
     seconds, half = delays["blue 0"]
     assert abs(seconds) < 0.005
     assert 0.0 < half < 0.02
+
+
+def test_a_match_that_waits_shows_its_start_and_what_is_moved() -> None:
+    with playing("striker_vs_goalkeeper", paused=True) as session, Client(session.server.url) as client:
+        client.read(lambda it: it.chunks)
+        ball = session.match.world.truth().ball
+        assert ball_of(client) == pytest.approx(ball.position, abs=0.001)
+        client.ask(do="ball", x=-1.25, y=0.5, held=True)
+        client.read(lambda it: ball_of(it) == pytest.approx((-1.25, 0.5), abs=0.001))
+        assert [chunk["frames"] for chunk in client.chunks] == [1, 1]
+        # What is shown between ticks is none, and the next tick takes its place.
+        stream = session.server.audience.stream
+        assert stream is not None
+        assert stream.end == 0
+        client.ask(do="ball", x=-1.25, y=0.5)
+        client.ask(do="step")
+        client.read(lambda it: len(it.chunks) > 2 and session.ticks == 1 and stream.end == 1)
+        saved = parse_recording(stream.recording(), Path("live"))
+        assert saved.times.tolist() == [0.0]
+        assert saved.truth.ball[0, :2] == pytest.approx((-1.25, 0.5), abs=0.001)
+
+
+def ball_of(client: Client) -> tuple[float, float]:
+    """Where the newest frame of a page has the ball [m]."""
+    x, y = np.frombuffer(base64.b64decode(client.chunks[-1]["ball"]), "<i2")[-4:-2] / 1000.0
+    return float(x), float(y)
 
 
 @pytest.mark.slow

@@ -82,6 +82,32 @@ def test_a_robot_is_dragged_and_taken_off_and_put_back(live: Page, session: Sess
     soon(lambda: any(event.kind == "robot moved" for event in recorded(session)))
 
 
+def test_what_is_dragged_in_a_paused_match_is_drawn_at_once(live: Page, session: Session) -> None:
+    ball = session.match.world.truth().ball.position
+    ticks = session.ticks
+    at = live.js(PLACE, -3.0, 2.0)
+    pixel = """const canvas = document.querySelector('#field'), box = canvas.getBoundingClientRect();
+      const share = canvas.width / box.width, [x, y] = arguments;
+      const read = new OffscreenCanvas(1, 1).getContext('2d', { willReadFrequently: true });
+      read.drawImage(canvas, (x - box.x) * share, (y - box.y) * share, 1, 1, 0, 0, 1, 1);
+      return [...read.getImageData(0, 0, 1, 1).data];"""
+    grass = live.js(pixel, *at)
+    drag(live, ball, (-3.0, 2.0))
+    soon(lambda: live.js(pixel, *at) != grass)
+    assert session.ticks == ticks
+
+
+def test_the_line_of_time_reaches_the_pause(live: Page, session: Session) -> None:
+    # Events and the axis are drawn four times a second: also after the last tick before a pause.
+    play(live, session, 5)
+    end = session.match.scenario.period * (session.ticks - 1)
+    live.wait("return Number(document.querySelector('#line').ariaValueMax) > arguments[0] - .006", end)
+    same = """const track = document.querySelector('#track'), before = track.toDataURL();
+      window.robobt.state.show();
+      return track.toDataURL() === before;"""
+    assert live.js(same)
+
+
 def recorded(session: Session) -> list[Event]:
     stream = session.server.audience.stream
     assert isinstance(stream, Stream)

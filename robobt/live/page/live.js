@@ -120,6 +120,8 @@ on("now", message => {
     if (later) later.push(chunk);
   }
   if (match.layers.size !== layered) offerLayers();
+  /* What stands in place of the newest frame is news too. */
+  shownFrames = -1;
   came = performance.now();
   const last = message.chunks[message.chunks.length - 1];
   if (last) unpainted.push({ time: endTime(), at: last.at });
@@ -172,7 +174,7 @@ const beat = time => {
       measured.frames++;
       setTimeout(painted);
     }
-    if (time > refreshed + 250) { refreshed = time; if (listed !== match.frames) { listed = match.frames; refresh(); if (now.span && !seekTo.matches(":active")) { seekTo.value = String(endTime()); put(seekAt, clock(endTime())); } if (!state.follow && !state.playing) state.show(); } }
+    if (time > refreshed + 250) { refreshed = time; if (listed !== match.frames) { listed = match.frames; refresh(); if (now.span && !seekTo.matches(":active")) { seekTo.value = String(endTime()); put(seekAt, clock(endTime())); } if (!state.playing) state.show(); } }
   }
   requestAnimationFrame(beat);
 };
