@@ -8,7 +8,8 @@ What a first session needs is found here::
     run = robobt.run_trials(scenario.with_robot("blue 0", rater="open_angle"), trials=20)
     print(run.summary().goals["blue"].trials)
 
-Skills are in :mod:`robobt.skills`, nodes in :mod:`robobt.tree`; everything else has its own room.
+Skills are in :mod:`robobt.skills`, nodes in :mod:`robobt.tree`; everything else has its own folder, which
+``robobt.NAME`` reaches, as in ``robobt.plays.import_file("my_plays.py")``.
 ``import robobt`` is cheap: each name is imported when it is first used. Their types are declared
 in ``__init__.pyi``.
 """
@@ -49,10 +50,30 @@ _HOMES = {
     "world_from": "worlds",
 }
 
+_ROOMS = (
+    "engines",
+    "identify",
+    "league",
+    "learning",
+    "live",
+    "match",
+    "models",
+    "motion",
+    "plays",
+    "shots",
+    "sim",
+    "skills",
+    "testing",
+    "tournament",
+    "tree",
+    "world",
+)
+"""Folders that ``robobt.NAME`` reaches without an import of their own."""
+
 __all__ = ["__version__", *_HOMES]
 
-__getattr__, _names = lazily(__name__, _HOMES)
+__getattr__, _names = lazily(__name__, _HOMES, _ROOMS)
 
 
 def __dir__() -> list[str]:
-    return sorted({*__all__, *(name for name in globals() if name.startswith("__"))})
+    return sorted({*__all__, *_ROOMS, *(name for name in globals() if name.startswith("__"))})

@@ -29,7 +29,19 @@ def test_the_stub_declares_each_name_from_the_place_it_is_taken_from() -> None:
         if isinstance(node, ast.ImportFrom)
         for alias in node.names
     }
-    assert declared == {name: f"robobt.{home}" for name, home in robobt._HOMES.items()}
+    rooms = dict.fromkeys(robobt._ROOMS, "robobt")
+    assert declared == {name: f"robobt.{home}" for name, home in robobt._HOMES.items()} | rooms
+
+
+def test_every_room_is_reached_from_robobt_without_an_import_of_its_own() -> None:
+    there = {path.parent.name for path in STUB.parent.glob("*/__init__.py")}
+    assert set(robobt._ROOMS) == there - {"cli", "config"}
+    code = "import robobt; print(robobt.plays.import_file.__name__, robobt.match.load_recording.__name__)"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    assert done.stdout.split() == ["import_file", "load_recording"], done.stderr
+    for room in robobt._ROOMS:
+        assert getattr(robobt, room) is import_module(f"robobt.{room}")
+        assert room in dir(robobt)
 
 
 def rooms() -> dict[str, list[str]]:
