@@ -11,6 +11,7 @@ import typer
 from robobt.cli.common import MAX_SEED, Json, Progress, Workers, cores, errors, print_json, say
 from robobt.cli.options import option
 from robobt.cli.outputs import make_folders
+from robobt.config.wording import counted
 
 
 class Attack(StrEnum):
@@ -103,8 +104,8 @@ def collect(
     else:
         speed = f", {done.real_time_factor:.0f} times real time" if done.new else ""
         say(
-            f"{done.shots} shots, {done.goals} goals ({figures['success_rate']:.1%}), {done.new} of them "
-            f"new{speed}, in {out}."
+            f"{counted(done.shots, 'shot')}, {counted(done.goals, 'goal')} ({figures['success_rate']:.1%}), "
+            f"{done.new} of them new{speed}, in {out}."
         )
     if done.interrupted:
         errors.print("stopped; the same command continues it", soft_wrap=True)

@@ -32,6 +32,7 @@ from robobt.cli.common import (
 from robobt.cli.option_groups.scenario import Set, scenario_of, with_teams
 from robobt.cli.options import option
 from robobt.cli.outputs import make_folders
+from robobt.config.wording import counted
 
 if TYPE_CHECKING:
     from robobt.match import MatchResult, Scenario
@@ -120,9 +121,7 @@ def compare(
         figures = {label: asdict(one) for label, one in found.items()}
         print_json({"scenario": base.name, "seed": used, "trials": count, "variants": figures})
         return
-    console.print(
-        f"[bold]{escape(base.name)}[/bold]: {count} trial{'s' if count > 1 else ''} a variant, seed {used}"
-    )
+    console.print(f"[bold]{escape(base.name)}[/bold]: {counted(count, 'trial')} a variant, seed {used}")
     _print(found)
 
 
@@ -164,9 +163,12 @@ def _print(found: dict[str, Compared]) -> None:
     rates = table("variant", "blue scores", "95 % interval", "to the ball", "to the kick")
     for label, one in found.items():
         if one.distinct < one.trials:
-            warn(f"{label}: only {one.distinct} of {one.trials} trials differ; vary the starts or add noise")
+            warn(
+                f"{label}: only {one.distinct} of {counted(one.trials, 'trial')} differ; "
+                "vary the starts or add noise"
+            )
         if one.errors:
-            warn(f"{label}: trees failed in {one.errors} ticks; the first: {one.first_error}")
+            warn(f"{label}: trees failed in {counted(one.errors, 'tick')}; the first: {one.first_error}")
         rates.add_row(
             name_lines(label, 58),
             f"{one.scored.count} of {one.trials}",
@@ -187,7 +189,7 @@ def _print(found: dict[str, Compared]) -> None:
         gaps.add_row("to the ball", *_texts(against.to_ball, 1.0, " s"))
         gaps.add_row("to the kick", *_texts(against.to_kick, 1.0, " s"))
         console.print(gaps)
-        only = f"in {against.only_this} trials, the other way round in {against.only_first}"
+        only = f"in {counted(against.only_this, 'trial')}, the other way round in {against.only_first}"
         say(f"Blue scores with {label} but not with {first} {only}.")
 
 

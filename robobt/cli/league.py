@@ -17,6 +17,7 @@ from robobt.cli.option_groups.page import Page
 from robobt.cli.options import option
 from robobt.cli.outputs import check_ending, make_folders
 from robobt.config.errors import unknown_name
+from robobt.config.wording import counted
 from robobt.signals import Terminated
 
 if TYPE_CHECKING:
@@ -204,7 +205,10 @@ def serve(
     if as_json:
         print_json(figures)
         return
-    say(f"Served {server.frames} frames, {served.time:.1f} s, at {server.kept:.1%} of the speed asked for.")
+    say(
+        f"Served {counted(server.frames, 'frame')}, {served.time:.1f} s, "
+        f"at {server.kept:.1%} of the speed asked for."
+    )
     for name, counts in server.counts.items():
         if counts.dropped:
             say(
@@ -239,7 +243,7 @@ class _TellOnce:
 def _announce(server: SimServer) -> None:
     to, robots = server.endpoints, server.field.truth().robots()
     say(
-        f"Serving {len(robots)} robots: vision to {to.vision}, tracked frames to {to.tracker}, "
+        f"Serving {counted(len(robots), 'robot')}: vision to {to.vision}, tracked frames to {to.tracker}, "
         f"commands at {to.grsim} (grSim), {to.blue} and {to.yellow} (control), {to.control} (teleport). "
         "Press Ctrl-C to stop."
     )

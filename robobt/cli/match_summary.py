@@ -9,6 +9,7 @@ from rich.table import Table
 
 from robobt.cli.common import console, errors, say, table, warn
 from robobt.cli.team_figures import team_figures
+from robobt.config.wording import counted
 
 if TYPE_CHECKING:
     from robobt.match import Run, Summary
@@ -23,7 +24,7 @@ _FEW = 10
 
 def print_summary(summary: Summary, run: Run, requested: int) -> None:
     """Print what a run's trials came to."""
-    played = f"{summary.trials} trial{'s' if summary.trials > 1 else ''}"
+    played = counted(summary.trials, "trial")
     stopped = f" of {requested} (stopped)" if run.interrupted else ""
     console.print(f"[bold]{escape(summary.scenario)}[/bold]: {played}{stopped}, seed {summary.seed}")
     listed = table("outcome", "trials", "rate", "95 % interval")
@@ -36,12 +37,12 @@ def print_summary(summary: Summary, run: Run, requested: int) -> None:
         )
     console.print(listed)
     if 1 < summary.distinct < _FEW or summary.trials == 1:
-        one = "One trial says" if summary.trials == 1 else f"{summary.distinct} trials say"
+        one = "One trial says" if summary.trials == 1 else f"{counted(summary.distinct, 'trial')} say"
         say(f"{one} little about how often something happens; --trials 100 narrows the intervals.")
     if summary.distinct < summary.trials:
         warn(
-            f"only {summary.distinct} of {summary.trials} trials differ; vary the starts or add noise, "
-            "as with --set simulator.realism=friendly"
+            f"only {summary.distinct} of {counted(summary.trials, 'trial')} differ; "
+            "vary the starts or add noise, as with --set simulator.realism=friendly"
         )
     console.print(_teams(summary) if summary.teams else _times(summary))
     pace = summary.real_time_factor
@@ -59,7 +60,8 @@ def tell_failures(summary: Summary, on_error: str) -> bool:
     for name, robot in failed.items():
         first = " ".join(str(robot.first_error).split())
         errors.print(
-            f"[red]{name}: its tree failed in {robot.errors} ticks[/red]; the first: {escape(first)}",
+            f"[red]{name}: its tree failed in {counted(robot.errors, 'tick')}[/red]; "
+            f"the first: {escape(first)}",
             soft_wrap=True,
         )
     for name, robot in summary.robots.items():

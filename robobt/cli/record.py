@@ -23,6 +23,7 @@ from robobt.cli.outputs import RECORDING, check_ending, make_folders
 from robobt.cli.recordings import recorded_robot, recording_file
 from robobt.cli.team_figures import team_figures
 from robobt.cli.train import Task
+from robobt.config.wording import counted
 
 _File = Annotated[Path, typer.Argument(help=f"A recording (*{RECORDING}).")]
 _Robot = Annotated[str | None, option("--robot", "; may be left out where only one was recorded")]
@@ -153,7 +154,8 @@ def demonstrations(
         print_json(figures)
         return
     say(
-        f"{recorded.episodes} episodes, {len(recorded)} steps, {figures['success']:.1%} successes, "
+        f"{counted(recorded.episodes, 'episode')}, {counted(len(recorded), 'step')}, "
+        f"{figures['success']:.1%} successes, "
         f"{figures['mean_time']:.2f} s each, in {out}."
     )
 

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Annotated
 from robobt.cli.common import MAX_SEED, Json, Progress, print_json, say, warn
 from robobt.cli.options import option
 from robobt.cli.outputs import make_folders
+from robobt.config.wording import counted
 
 if TYPE_CHECKING:
     from robobt.models.card import Measured
@@ -127,7 +128,7 @@ def score(
     if left_out:
         unnamed = f", {len(left_out) - _MOST_TOLD} of them not named" if len(left_out) > _MOST_TOLD else ""
         are = "is" if len(left_out) == 1 else "are"
-        warn(f"{len(left_out)} of {len(left_out) + len(scored)} shots {are} left out{unnamed}")
+        warn(f"{len(left_out)} of {counted(len(left_out) + len(scored), 'shot')} {are} left out{unnamed}")
     figures = measured(expected, scored)
     if as_json:
         counts = {
@@ -139,14 +140,17 @@ def score(
         found = {key: figure.model_dump() for key, figure in figures.items()}
         print_json({"model": model, "data": str(data), **counts, **found})
         return
-    say(f"{model}: {len(scored)} shots, {scored.sum()} goals, {expected.sum():.1f} predicted.")
+    say(
+        f"{model}: {counted(len(scored), 'shot')}, {counted(int(scored.sum()), 'goal')}, "
+        f"{expected.sum():.1f} predicted."
+    )
     say(f"{_figures(figures)}.")
 
 
 def _figures(figures: Mapping[str, Measured], prefix: str = "") -> str:
     right, loss, off = [figures[prefix + name] for name in ("accuracy", "log_loss", "calibration_error")]
     return (
-        f"{right.n} shots, {right.value:.1%} right ({right.low:.1%} to {right.high:.1%}), "
+        f"{counted(right.n, 'shot')}, {right.value:.1%} right ({right.low:.1%} to {right.high:.1%}), "
         f"log-loss {loss.value:.3f} ({loss.low:.3f} to {loss.high:.3f}), "
         f"calibration error {off.value:.3f} ({off.low:.3f} to {off.high:.3f})"
     )

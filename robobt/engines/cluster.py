@@ -23,6 +23,7 @@ from robobt.config.closing import Closing
 from robobt.config.errors import RobobtError, one_line
 from robobt.config.resources import models_folder, scenarios_folder
 from robobt.config.telling import tell_warnings
+from robobt.config.wording import counted
 from robobt.engines.work import ReportT, ResultT, TaskT, Work
 
 _TASK_ATTEMPTS = 4
@@ -140,7 +141,7 @@ class RayEngine(Closing):
                             # One by one, so that a task that ends its worker does not affect others.
                             again.extend([(task, attempt + (len(batch) == 1)) for task in batch])
                             continue
-                        died = f"lost {attempt} times: {one_line(str(error), 200)}"
+                        died = f"lost {counted(attempt, 'time')}: {one_line(str(error), 200)}"
                         if lost is None:
                             raise work.error(f"{work.noun} {batch[0]}: {died}") from error
                         yield lost(batch[0], died)

@@ -8,6 +8,7 @@ from math import sqrt
 
 import numpy as np
 
+from robobt.config.wording import counted
 from robobt.identify.ball import BallEstimate, identify_ball
 from robobt.identify.estimate import Estimate, unseen
 from robobt.identify.free_ball import stretches
@@ -71,7 +72,7 @@ def identify(seen: Observations) -> Identification:
         ValueError: there are hardly any pictures.
     """
     if len(seen) < _LEAST_PICTURES:
-        raise ValueError(f"holds {len(seen)} pictures, too few to identify anything")
+        raise ValueError(f"holds {counted(len(seen), 'picture')}, too few to identify anything")
     noise = identify_noise(seen)
     ball = identify_ball(seen, stretches(seen))
     usual = noise.robot_noise.value if noise.robot_noise.seen else _USUAL_NOISE

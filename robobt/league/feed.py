@@ -7,6 +7,7 @@ from collections import deque
 from collections.abc import Callable, Mapping
 from contextlib import ExitStack
 
+from robobt.config.wording import counted
 from robobt.league.connection import Connection, LeagueError
 from robobt.league.estimate.clocks import CameraClocks
 from robobt.league.estimate.filter import VisionFilter
@@ -189,7 +190,7 @@ class Feed:
     def no_frames(self, seconds: float) -> str:
         """Return the error message for a field that was silent for this time."""
         dropped = self._vision.counts.dropped
-        heard = f" ({dropped} packets were dropped)" if dropped else ""
+        heard = f" ({counted(dropped, 'packet')} dropped)" if dropped else ""
         return f"no {self.connection.source} at {self._source} for {seconds:g} s{heard}: start the simulator"
 
     def receive(self, wait: float) -> None:

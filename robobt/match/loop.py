@@ -12,6 +12,7 @@ import numpy as np
 
 from robobt.config.closing import Closing
 from robobt.config.process import OwnProcess
+from robobt.config.wording import counted
 from robobt.match.capture import MatchCapture
 from robobt.match.ends import EndJudge, Outcome
 from robobt.match.lineup import Lineup, leave
@@ -126,7 +127,7 @@ class MatchLoop(Closing):
         standing = "playing" if self.outcome is None else self.outcome.value
         return (
             f"<Match of {self.scenario.name!r}, seed {self.seed}: {standing} at {self._time:.2f} s, "
-            f"{len(self.players)} robots>"
+            f"{counted(len(self.players), 'robot')}>"
         )
 
     def play(self) -> MatchResult:

@@ -9,6 +9,7 @@ from pathlib import Path
 from urllib.parse import quote
 
 from robobt.config.atomic import write_atomically
+from robobt.config.wording import counted
 from robobt.live.replay_html import write_html
 from robobt.match.recording import RecordingError
 from robobt.tournament.played import PlayedMatch
@@ -78,7 +79,8 @@ def report(
     title = escape(f"Tournament: {played.get('scenario', '')}")
     settings = ", ".join([f"{escape(str(name))} {escape(str(value))}" for name, value in played.items()])
     parts = [
-        f"<h1>{title}</h1><p>{settings}; {found.matches} matches, {found.distinct} of them distinct.</p>",
+        f"<h1>{title}</h1><p>{settings}; {counted(found.matches, 'match', 'matches')}, "
+        f"{found.distinct} of them distinct.</p>",
         f"<p><b>{escape(verdict)}</b></p>" if verdict else "",
         "<h2>Ratings</h2>",
         rating_plot(found.standings),

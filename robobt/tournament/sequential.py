@@ -19,6 +19,7 @@ from statistics import fmean
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from robobt.config.wording import counted
 from robobt.tournament.fixtures import Fixture
 from robobt.tournament.played import PlayedMatch
 from robobt.tournament.ratings import expected_score
@@ -142,7 +143,7 @@ class RunningTest:
     def brief(self) -> str:
         """Return how far it is, in a few words."""
         low, high = self._test.bounds
-        return f"{self.rounds} rounds, {low:.2f} < {self.ratio:+.2f} < {high:.2f}"
+        return f"{counted(self.rounds, 'round')}, {low:.2f} < {self.ratio:+.2f} < {high:.2f}"
 
     def line(self) -> str:
         """Return what it says, with its bounds."""
@@ -153,9 +154,9 @@ class RunningTest:
             Verdict.UNDECIDED: f"undecided between {self._first} and {self._second}",
         }[self.verdict]
         return (
-            f"Sequential test: {said} after {self.rounds} rounds. Log-likelihood ratio {self.ratio:+.2f} of "
-            f"{test.elo1:+g} to {test.elo0:+g} Elo, bounds {low:.2f} (beta {test.beta:g}) and {high:.2f} "
-            f"(alpha {test.alpha:g})."
+            f"Sequential test: {said} after {counted(self.rounds, 'round')}. "
+            f"Log-likelihood ratio {self.ratio:+.2f} of {test.elo1:+g} to {test.elo0:+g} Elo, "
+            f"bounds {low:.2f} (beta {test.beta:g}) and {high:.2f} (alpha {test.alpha:g})."
         )
 
     def to_json(self) -> dict[str, object]:

@@ -7,6 +7,7 @@ from dataclasses import dataclass, fields, replace
 from itertools import combinations
 from statistics import fmean
 
+from robobt.config.wording import counted
 from robobt.match.results.teams import TeamResult
 from robobt.statistics import holm, mcnemar, mean_interval
 from robobt.tournament.fixtures import Fixture
@@ -96,14 +97,19 @@ class Standings:
         found = []
         if self.distinct < self.matches:
             found.append(
-                f"only {self.distinct} of {self.matches} matches differ; vary the starts or add noise, "
-                "as with --set simulator.realism=friendly"
+                f"only {self.distinct} of {counted(self.matches, 'match', 'matches')} differ; "
+                "vary the starts or add noise, as with --set simulator.realism=friendly"
             )
         for name, one in self.standings.items():
             if one.forfeits:
-                found.append(f"{name}: lost {one.forfeits} matches by rule; the first: {one.first_error}")
+                found.append(
+                    f"{name}: lost {counted(one.forfeits, 'match', 'matches')} by rule; "
+                    f"the first: {one.first_error}"
+                )
             if one.errors:
-                found.append(f"{name}: trees failed in {one.errors} ticks; the first: {one.first_error}")
+                found.append(
+                    f"{name}: trees failed in {counted(one.errors, 'tick')}; the first: {one.first_error}"
+                )
         return found
 
 

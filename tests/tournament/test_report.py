@@ -51,7 +51,7 @@ def test_the_page_tells_what_went_wrong_as_plain_text() -> None:
     page = report({}, standings_of(matches, ["a", "b"]), matches, {})
     text = " ".join(Page(page).words)
     assert "only 2 of 3 matches differ" in text
-    assert "a: lost 1 matches by rule; the first: <b>it crashed</b>" in text
+    assert "a: lost 1 match by rule; the first: <b>it crashed</b>" in text
     assert "a: trees failed in 4 ticks" in text
     assert "<b>" not in page
 

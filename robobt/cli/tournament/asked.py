@@ -11,6 +11,7 @@ import typer
 from robobt.cli.common import warn
 from robobt.cli.option_groups.scenario import parse_play
 from robobt.cli.options import option
+from robobt.config.wording import counted
 
 if TYPE_CHECKING:
     from robobt.tournament.entrants import Entrant
@@ -86,8 +87,8 @@ def require_programs(teams: Iterable[Entrant]) -> None:
 def tell_waiting(matches: int) -> None:
     """Tell that another command holds up this one."""
     warn(
-        f"waiting for {matches} matches that another command plays with the same store; if it is suspended, "
-        "let it go on or end it"
+        f"waiting for {counted(matches, 'match', 'matches')} that another command plays with the same store; "
+        "if it is suspended, let it go on or end it"
     )
 
 
@@ -96,6 +97,6 @@ def tell_code(matches: Iterable[PlayedMatch]) -> None:
     versions = {match.code for match in matches}
     if len(versions) > 1:
         warn(
-            f"the matches were played by {len(versions)} states of the code; for a fair comparison play "
-            "them all again, with another --out"
+            f"the matches were played by {counted(len(versions), 'state')} of the code; for a fair "
+            "comparison play them all again, with another --out"
         )

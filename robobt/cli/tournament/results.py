@@ -14,6 +14,7 @@ from robobt.cli.common import Json, console, print_json, say, table
 from robobt.cli.options import option
 from robobt.cli.tournament.tables import lead_text, print_encounters, print_standings
 from robobt.config.errors import unknown_name
+from robobt.config.wording import counted
 
 if TYPE_CHECKING:
     from robobt.tournament.played import PlayedMatch
@@ -80,7 +81,10 @@ def results(
         print_json({**said, **asdict(summed)})
     else:
         told = [f"{name} {value}" for name, value in played.items() if name not in ("format", "digest")]
-        console.print(f"[bold]{escape(str(store))}[/bold]: {escape(', '.join(told))}; {len(found)} matches")
+        console.print(
+            f"[bold]{escape(str(store))}[/bold]: {escape(', '.join(told))}; "
+            f"{counted(len(found), 'match', 'matches')}"
+        )
         print_standings(summed)
 
 

@@ -41,6 +41,7 @@ from robobt.cli.tournament.asked import (
     tell_code,
     tell_waiting,
 )
+from robobt.config.wording import counted
 
 if TYPE_CHECKING:
     from robobt.tournament.fixtures import Fixture
@@ -168,7 +169,7 @@ def sweep(
         else:
             console.print(
                 f"[bold]{escape(name)}[/bold] in {escape(base.name)} against {escape(asked.against.name)}: "
-                f"{len(found.matches)} matches, seed {asked.seed}, "
+                f"{counted(len(found.matches), 'match', 'matches')}, seed {asked.seed}, "
                 f"{'no' if said['referee'] == 'none' else said['referee']} referee"
             )
             _print(found.swept, best)
@@ -251,12 +252,14 @@ def _warn_of(found: _SweepOutcome, out: Path | None) -> None:
         warn(f"{fixture} could not be played: {problem}")
     for one in found.swept.candidates:
         if one.first_error is not None:
-            failed_in = f"trees failed in {one.errors} ticks; the first" if one.errors else "lost by rule"
+            failed_in = (
+                f"trees failed in {counted(one.errors, 'tick')}; the first" if one.errors else "lost by rule"
+            )
             warn(f"{one.name}: {failed_in}: {one.first_error}")
     tell_code(found.matches)
     if found.interrupted:
         kept = "without --out nothing is kept" if out is None else "the same command goes on with it"
-        warn(f"stopped after {len(found.matches)} matches; {kept}")
+        warn(f"stopped after {counted(len(found.matches), 'match', 'matches')}; {kept}")
 
 
 def _print(swept: Swept, best: Candidate | None) -> None:

@@ -45,6 +45,7 @@ from robobt.cli.tournament.asked import (
 )
 from robobt.cli.tournament.tables import print_standings
 from robobt.config.extras import need
+from robobt.config.wording import counted
 
 if TYPE_CHECKING:
     from robobt.tournament.fixtures import Fixture
@@ -253,8 +254,8 @@ def _print(
         print_json({**said, **asdict(found), **ended, "sprt": None if test is None else test.to_json()})
         return
     console.print(
-        f"[bold]{escape(str(said['scenario']))}[/bold]: {found.matches} matches, seed {said['seed']}, "
-        f"{'no' if said['referee'] == 'none' else said['referee']} referee"
+        f"[bold]{escape(str(said['scenario']))}[/bold]: {counted(found.matches, 'match', 'matches')}, "
+        f"seed {said['seed']}, {'no' if said['referee'] == 'none' else said['referee']} referee"
     )
     print_standings(found)
     if test is not None:
@@ -296,7 +297,7 @@ def _warn_of(played: Played, count: int, out: Path | None) -> None:
         warn(f"{fixture} could not be played: {problem}")
     if played.interrupted:
         kept = "without --out nothing is kept" if out is None else "the same command goes on with it"
-        warn(f"stopped after {len(played.matches)} of {count} matches; {kept}")
+        warn(f"stopped after {len(played.matches)} of {counted(count, 'match', 'matches')}; {kept}")
 
 
 def _workers(plan: Plan) -> int:

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from math import hypot
 
+from robobt.config.wording import counted
 from robobt.match.referee.positions import NEAR_SPOT, PLACEMENT_AREA_GAP, STILL_BALL_SPEED, penalty_problems
 from robobt.match.referee.restarts import penalty
 from robobt.world.field import FieldGeometry
@@ -61,5 +62,5 @@ def waits_for(field: FieldGeometry, frame: Frame, game: GameState) -> list[str]:
     for team in Team:
         most, there = game.status(team).max_robots, sum(robot.team is team for robot in robots)
         if most is not None and there > most:
-            problems.append(f"{team.value} has {there} robots and may have {most}")
+            problems.append(f"{team.value} has {counted(there, 'robot')} and may have {most}")
     return problems

@@ -21,6 +21,7 @@ from pathlib import Path
 from xml.sax.saxutils import quoteattr
 
 from robobt.config.atomic import write_atomically
+from robobt.config.wording import counted
 from robobt.match.recording import RecordedNode, RecordedRobot, Recording
 from robobt.tree.interop.btcpp import OTHER_TAGS, TAGS
 from robobt.world.state import RobotId
@@ -54,7 +55,9 @@ def btlog(recording: Recording, robot: RobotId) -> bytes:
     if not told.tree:
         raise ValueError(f"no tree was recorded for {robot} in {recording.path}")
     if len(told.tree) > MOST_NODES:
-        raise ValueError(f"the tree of {robot} has {len(told.tree)} nodes; a .btlog holds {MOST_NODES}")
+        raise ValueError(
+            f"the tree of {robot} has {counted(len(told.tree), 'node')}; a .btlog holds {MOST_NODES}"
+        )
     xml = tree_xml(told).encode()
     start = _microseconds(recording.times[0]) if len(recording) else 0
     head = MAGIC + struct.pack("<Bi", BTLOG_VERSION, len(xml)) + xml + struct.pack("<q", start)

@@ -14,6 +14,7 @@ from robobt.config.errors import ConfigError, FieldError, one_line, short_repr, 
 from robobt.config.resources import bundled_scenarios
 from robobt.config.seeds import MAX_SEED as MAX_SEED
 from robobt.config.validation import first_problem
+from robobt.config.wording import counted
 from robobt.config.yaml import read_yaml
 from robobt.match.referee.settings import RefereeSettings
 from robobt.match.scenario.placing import Placer, check_inside, check_starts
@@ -134,7 +135,7 @@ class Scenario(ScenarioPart):
         for team in Team:
             there = sum(robot.team is team for robot in robots)
             if referee.max_robots is not None and there > referee.max_robots:
-                problem = f"is {referee.max_robots}, but {team.value} has {there} robots"
+                problem = f"is {referee.max_robots}, but {team.value} has {counted(there, 'robot')}"
                 raise FieldError("referee.max_robots", problem)
         kicking = {"penalty": [referee.opening_team], "shoot_out": list(Team)}.get(referee.opening, [])
         keepers = self.goalkeepers()

@@ -66,7 +66,7 @@ def test_a_tournament_is_played_kept_told_and_reported(tmp_path: Path) -> None:
 def test_a_sequential_test_that_stays_undecided_exits_with_2() -> None:
     shown = invoke("take_shot", "--against", "attack_main", "--sprt", "0", "30", *QUICK)
     assert shown.exit_code == 2
-    assert "undecided between take_shot and attack_main after 1 rounds" in plain(shown)
+    assert "undecided between take_shot and attack_main after 1 round" in plain(shown)
     assert "bounds -2.94 (beta 0.05) and 2.94 (alpha 0.05)" in plain(shown)
 
 

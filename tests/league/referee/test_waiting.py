@@ -58,7 +58,7 @@ def test_opponents_keep_their_distance_and_all_do_before_a_kick_off() -> None:
 
 def test_too_many_robots_are_named() -> None:
     game = replace(STOP, yellow=TeamStatus(max_robots=0))
-    assert waits(game, PLACED, (-3.0, 0.0), (3.0, 0.0)) == ["yellow has 1 robots and may have 0"]
+    assert waits(game, PLACED, (-3.0, 0.0), (3.0, 0.0)) == ["yellow has 1 robot and may have 0"]
     # One that was taken off at the half-way line is not counted.
     assert waits(game, PLACED, (-3.0, 0.0), (0.2, 3.15)) == []
 

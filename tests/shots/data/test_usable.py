@@ -119,6 +119,6 @@ def test_a_predictor_is_judged_on_the_shots_that_give_what_it_needs(tmp_path: Pa
     file.write_text(text(GOOD, *[lacking] * 30))
     code, out, said = score("--data", str(file))
     assert code == 0
-    assert "1 shots" in out
+    assert "1 shot" in out
     assert said.count("lacks") == 10
     assert said.endswith("30 of 31 shots are left out, 20 of them not named")
