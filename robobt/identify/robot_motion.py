@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from math import cos, exp, hypot, pi, sin, sqrt
+from math import cos, hypot, pi, sin, sqrt
 
 import numpy as np
 
 from robobt.world.compiled import compilable, compiled
+from robobt.world.driving import approached
 from robobt.world.geometry import FloatArray
 
 DRIVE_PARAMETERS = (
@@ -43,9 +44,9 @@ def _drive(state: FloatArray, vx: float, vy: float, omega: float, p: FloatArray,
     It is x, y, heading, vx, vy, omega, and the velocity that the robot's controller follows.
     """
     c, s = cos(state[2]), sin(state[2])
-    state[6] += _caught_up(p[11], dt) * (vx - state[6])
-    state[7] += _caught_up(p[12], dt) * (vy - state[7])
-    state[8] += _caught_up(p[13], dt) * (omega - state[8])
+    state[6] = approached(state[6], vx, p[11], dt)
+    state[7] = approached(state[7], vy, p[12], dt)
+    state[8] = approached(state[8], omega, p[13], dt)
     vx = state[6] * p[8] + state[7] * p[14]
     vy = state[7] * p[9] + state[6] * p[15]
     omega = state[8] * p[10]
@@ -71,12 +72,6 @@ def _drive(state: FloatArray, vx: float, vy: float, omega: float, p: FloatArray,
     state[0] += state[3] * dt
     state[1] += state[4] * dt
     state[2] += state[5] * dt
-
-
-@compilable
-def _caught_up(lag: float, dt: float) -> float:
-    """Return the share of a difference that a first-order lag makes up in ``dt``."""
-    return 1.0 - exp(-dt / lag) if lag > 1e-6 else 1.0
 
 
 @compiled

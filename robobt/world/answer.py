@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
-from math import exp
 
 from robobt.world.command import RobotCommand
+from robobt.world.driving import approached
 from robobt.world.limits import RobotLimits
 from robobt.world.state import Frame, RobotId
 
@@ -21,9 +21,9 @@ class FollowedCommand:
 
     def follow(self, command: RobotCommand, limits: RobotLimits, time: float) -> None:
         """Follow a command for a time [s], with the lag of each axis."""
-        self.vx = _nearer(self.vx, command.vx, limits.lag, time)
-        self.vy = _nearer(self.vy, command.vy, limits.side_lag, time)
-        self.omega = _nearer(self.omega, command.omega, limits.turn_lag, time)
+        self.vx = approached(self.vx, command.vx, limits.lag, time)
+        self.vy = approached(self.vy, command.vy, limits.side_lag, time)
+        self.omega = approached(self.omega, command.omega, limits.turn_lag, time)
 
     def reached(self, limits: RobotLimits) -> tuple[float, float, float]:
         """Return what the robot makes of it: velocity ahead and to the left [m/s], turning rate [rad/s]."""
@@ -72,8 +72,3 @@ def compensated(commands: Mapping[RobotId, RobotCommand], frame: Frame) -> Mappi
             vx, vy, omega = state.limits.command_for(wanted.vx, wanted.vy, wanted.omega)
             changed[robot] = replace(wanted, vx=vx, vy=vy, omega=omega)
     return {**commands, **changed}
-
-
-def _nearer(value: float, target: float, lag: float, time: float) -> float:
-    """Return a value that approaches its target for a time [s] with a first-order lag [s]."""
-    return target + (value - target) * exp(-time / lag) if lag > 0.0 else target

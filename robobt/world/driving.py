@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import cos, exp, hypot, sin, sqrt
 from typing import Protocol
 
-from robobt.world.compiled import compiled_lean
+from robobt.world.compiled import compilable, compiled_lean
 from robobt.world.records import Limits, Robot
 
 
@@ -27,14 +27,14 @@ _ROUNDING_SHARE = 1.0 - 1e-9
 @compiled_lean
 def follow(followed: LocalVelocity, command: LocalVelocity, limits: Limits, dt: float) -> None:
     """Let a robot's controller follow its command with the lag of each axis."""
-    followed.vx = _nearer(followed.vx, command.vx, limits.lag, dt)
-    followed.vy = _nearer(followed.vy, command.vy, limits.side_lag, dt)
-    followed.omega = _nearer(followed.omega, command.omega, limits.turn_lag, dt)
+    followed.vx = approached(followed.vx, command.vx, limits.lag, dt)
+    followed.vy = approached(followed.vy, command.vy, limits.side_lag, dt)
+    followed.omega = approached(followed.omega, command.omega, limits.turn_lag, dt)
 
 
-@compiled_lean
-def _nearer(value: float, target: float, lag: float, dt: float) -> float:
-    """Return a value that approaches its target for ``dt`` with a first-order lag."""
+@compilable
+def approached(value: float, target: float, lag: float, dt: float) -> float:
+    """Return a value that has approached its target for ``dt`` [s] with a first-order lag [s]."""
     # It arrives: a speed of 1e-310 has no direction that wheels could take.
     if lag <= 0.0 or abs(value - target) < _ARRIVED:
         return target
