@@ -2,29 +2,23 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from robobt.cli.common import Json, console, print_json, say, table
+from robobt.cli.common import Json, Progress, console, print_json, say, table
 from robobt.cli.options import option
 from robobt.cli.outputs import RECORDING, check_ending, make_folders
 
 if TYPE_CHECKING:
-    from robobt.identify.estimate import Estimate
     from robobt.identify.report import Identification
+    from robobt.identify.robots import RobotEstimate
+    from robobt.world.game import Team
 
-_ROBOT_COLUMNS = {
-    "max_speed": "top speed",
-    "acceleration": "accelerates",
-    "braking": "brakes",
-    "side_acceleration": "aside",
-    "side_braking": "brakes aside",
-    "gain": "gain",
-    "side_gain": "gain aside",
-    "delay": "delay, ms",
-}
+_ROBOTS_BESIDE = 6
+"""Robots in one table, so that it fits a screen of 80 columns."""
 
 
 def identify(
@@ -52,6 +46,7 @@ def identify(
     from robobt.identify.preset_file import write_preset
     from robobt.identify.report import as_json as figures_of
     from robobt.identify.report import identify as identified_from
+    from robobt.identify.report import parts_of
     from robobt.identify.sources import load_observations
     from robobt.sim.settings import PRESETS
 
@@ -61,7 +56,9 @@ def identify(
     if out is not None:
         check_ending("--out", out, ".yaml", ".yml")
         make_folders({"--out": out})
-    found = identified_from(load_observations(file))
+    seen = load_observations(file)
+    with Progress("identify", parts_of(seen)) as progress:
+        found = identified_from(seen, progress.advance)
     if out is not None:
         write_preset(found, out, base)
     if as_json:
@@ -73,10 +70,12 @@ def identify(
 
 
 def _show(found: Identification) -> None:
-    """Print the field's figures, a row each, and the robots', a row a robot."""
+    """Print the field's figures, a row each, and the robots', a row a figure."""
+    from robobt.world.game import Team
+
     listed = table(f"from {found.seconds:.0f} s of play", "value", "95 % interval", "events")
     for name, figure in found.figures():
-        # Robots have spaces in their names, and a table of their own.
+        # Robots have spaces in their names, and tables of their own.
         if " " in name:
             continue
         if figure.seen:
@@ -85,15 +84,20 @@ def _show(found: Identification) -> None:
         else:
             listed.add_row(name, "not seen enough", "", str(figure.count))
     console.print(listed)
-    robots = table("m/s, m/s²", *_ROBOT_COLUMNS.values())
-    for robot in found.robots:
-        figures = [_short(robot.figures[name], name == "delay") for name in _ROBOT_COLUMNS]
-        robots.add_row(str(robot.robot), *figures)
-    console.print(robots)
+    for team in Team:
+        robots = [robot for robot in found.robots if robot.robot.team is team]
+        for first in range(0, len(robots), _ROBOTS_BESIDE):
+            _show_robots(team, robots[first : first + _ROBOTS_BESIDE])
+    say("-: not seen enough. The preset file and --json have the robots' intervals.")
 
 
-def _short(figure: Estimate, milliseconds: bool) -> str:
-    if not figure.seen:
-        return "-"
-    factor = 1000.0 if milliseconds else 1.0
-    return f"{figure.value * factor:.3g} ±{figure.half_width * factor:.2g}"
+def _show_robots(team: Team, robots: Sequence[RobotEstimate]) -> None:
+    from robobt.identify.robots import UNITS
+
+    listed = table(team.value, *[str(robot.robot.number) for robot in robots])
+    for name, unit in UNITS.items():
+        figures = [robot.figures[name] for robot in robots]
+        # What is less than a tenth of a thousandth is 0, and so is -0.
+        values = [f"{round(it.value, 4) + 0.0:.3g}" if it.seen else "-" for it in figures]
+        listed.add_row(f"{name}, {unit}" if unit else name, *values)
+    console.print(listed)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from math import sqrt
 
@@ -57,13 +57,19 @@ class Identification:
                 yield f"{robot.robot}.{name}", figure
 
 
-def identify(seen: Observations) -> Identification:
+def parts_of(seen: Observations) -> int:
+    """Return how many parts the work of :func:`identify` has: the ball and each robot."""
+    return 1 + len(seen.robots)
+
+
+def identify(seen: Observations, on_part: Callable[[], None] = lambda: None) -> Identification:
     """Identify the ball, the robots, delay and noise from what cameras saw and what robots were sent.
 
     A minute of ordinary play is enough for most figures.
 
     Args:
         seen: the observations.
+        on_part: called after each part of the work, of which there are :func:`parts_of`.
 
     Returns:
         every figure with its 95 % interval; those that were not seen enough say so.
@@ -75,14 +81,16 @@ def identify(seen: Observations) -> Identification:
         raise ValueError(f"holds {counted(len(seen), 'picture')}, too few to identify anything")
     noise = identify_noise(seen)
     ball = identify_ball(seen, stretches(seen))
+    on_part()
     usual = noise.robot_noise.value if noise.robot_noise.seen else _USUAL_NOISE
-    robots = tuple(
-        identify_robot(seen, place) if seen.commanded(place) else identify_opponent(seen, place, usual)
-        for place in range(len(seen.robots))
-    )
+    robots = []
+    for place in range(len(seen.robots)):
+        own = seen.commanded(place)
+        robots.append(identify_robot(seen, place) if own else identify_opponent(seen, place, usual))
+        on_part()
     delay = _together([robot.figures["delay"] for robot in robots])
     kicks = identify_kicks(seen, ball.kicks, delay.value - seen.age if delay.seen else None)
-    return Identification(float(seen.times[-1] - seen.times[0]), ball, kicks, noise, delay, robots)
+    return Identification(float(seen.times[-1] - seen.times[0]), ball, kicks, noise, delay, tuple(robots))
 
 
 _USUAL_NOISE = 0.001

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import shlex
 from pathlib import Path
 
@@ -15,6 +16,7 @@ from robobt.identify import identify, write_preset
 from robobt.identify.estimate import unseen
 from robobt.identify.observations import without_repeats
 from robobt.identify.preset_file import preset_of
+from robobt.identify.report import parts_of
 from robobt.identify.sources import NothingToIdentifyError, load_observations, observations_of
 from robobt.league.log.files import LogKind, LogWriter
 from robobt.league.wire.vision import BallDetection, CameraFrame, RobotDetection, write_vision
@@ -126,9 +128,24 @@ def test_the_command_prints_figures_and_writes_the_file(recording: Path, tmp_pat
     assert figures["delay"]["seen"]
     assert figures["ball.switch_share"].keys() == {"value", "low", "high", "count", "seen", "unit"}
     assert preset(str(out)).realism.robot_noise == pytest.approx(0.001, rel=0.1)
-    shown = CliRunner().invoke(app, ["record", "identify", str(recording)])
-    assert "not seen enough" in shown.stdout
-    assert "blue 1" in shown.stdout
+    shown = CliRunner().invoke(app, ["record", "identify", str(recording)]).stdout
+    # The page, the file and the screen have one name for each figure, and one line on a usual screen.
+    for name in figures:
+        assert re.search(rf"^{re.escape(name.removeprefix('blue 1.'))}\b", shown, re.MULTILINE) or " " in name
+    assert re.search(r"^side_braking, m/s²  ", shown, re.MULTILINE)
+    assert re.search(r"^blue +0 +1 +2 *$", shown, re.MULTILINE)
+    assert "-: not seen enough" in shown
+    assert max(map(len, shown.splitlines())) <= 80
+
+
+def test_every_figure_is_on_the_page_and_each_part_of_the_work_is_counted(recording: Path) -> None:
+    page = (Path(__file__).parents[2] / "docs" / "identify.md").read_text(encoding="utf-8")
+    named = {it.rpartition(".")[2] for it in re.findall(r"`([a-z._]+)`", page)}
+    seen, parts = load_observations(recording), []
+    found = identify(seen, lambda: parts.append(1))
+    assert {name.rpartition(".")[2] for name, _ in found.figures()} <= named
+    # Whoever waits sees how far it is.
+    assert len(parts) == parts_of(seen) == 1 + len(seen.robots)
 
 
 @pytest.mark.slow  # it identifies twelve robots
