@@ -15,6 +15,15 @@ if TYPE_CHECKING:
     from robobt.testing.ticking import Ticker
 
 
+def pytest_assertrepr_compare(op: str, left: object, right: object) -> list[str] | None:
+    """Show wrong statuses of ``tick_on`` with what the skills said."""
+    told = getattr(left, "differences", None)
+    if op != "==" or told is None or type(left).__module__ != "robobt.testing.ticking":
+        return None
+    lines: list[str] = told(right)
+    return lines
+
+
 @pytest.fixture
 def make_store() -> Callable[..., Store]:
     """Return the function :func:`robobt.testing.make_store`, which makes a robot's store."""

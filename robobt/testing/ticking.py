@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import Any
 
 from py_trees.behaviour import Behaviour
@@ -10,7 +10,7 @@ from py_trees.common import Status
 
 from robobt.skills.store import Store
 from robobt.testing.frames import frame, robot
-from robobt.tree import TreeRunner
+from robobt.tree import TreeRunner, node_path
 from robobt.world import Frame, RobotCommand, RobotState
 
 
@@ -31,13 +31,47 @@ def make_store(seen: Frame | None = None, number: int | None = None, **entries: 
     return Store(seen, _robot(seen, number), **entries)
 
 
+class Statuses(list[Status]):
+    """The statuses of some ticks: a list, which pytest shows with the reasons.
+
+    Attributes:
+        said: for each tick the path of the node that decided, and its feedback.
+    """
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.said: list[str] = []
+
+    def differences(self, expected: Sequence[object]) -> list[str]:
+        """Return what pytest shows where these are not the statuses that a test expects.
+
+        Args:
+            expected: those statuses.
+        """
+        lines = [f"{_names(self)} == {_names(expected)}"]
+        for tick, (status, said) in enumerate(zip(self, self.said, strict=True)):
+            wanted = expected[tick] if tick < len(expected) else None
+            if status is not wanted:
+                instead = f", not {_name(wanted)}" if wanted is not None else ", a tick too many"
+                lines.append(f"tick {tick}: {status.name} ({said}){instead}")
+        return lines
+
+
+def _names(statuses: Iterable[object]) -> str:
+    return f"[{', '.join(map(_name, statuses))}]"
+
+
+def _name(status: object) -> str:
+    return status.name if isinstance(status, Status) else repr(status)
+
+
 class Ticker:
     """Ticks trees on frames, one tick a frame; pytest's fixture ``tick_on`` is one."""
 
     def __init__(self) -> None:
         self._runners: dict[Behaviour, tuple[TreeRunner, Store]] = {}
 
-    def __call__(self, tree: Behaviour, frames: Iterable[Frame], store: Store | None = None) -> list[Status]:
+    def __call__(self, tree: Behaviour, frames: Iterable[Frame], store: Store | None = None) -> Statuses:
         """Tick a skill or a tree once on each frame and return its statuses.
 
         A second call with the same tree goes on where the first one ended, unless it is given another store.
@@ -48,15 +82,20 @@ class Ticker:
             store: what it works on, with the robot it moves; by default that of the call before, or a new
                 one of the first robot of the own team. What was commanded last is in ``store.command``.
 
+        Returns:
+            the status of each tick; where a test compares them, pytest shows the nodes' reasons.
+
         Raises:
             TreeError: a node raised.
             ValueError: the robot is not on the field.
         """
-        statuses = []
+        statuses = Statuses()
         for seen in frames:
             runner, own = self._runner(tree, seen, store)
             own.frame, own.me, own.command = seen, _robot(seen, own.me.id), RobotCommand()
             statuses.append(runner.tick())
+            tip = runner.tip()
+            statuses.said.append(": ".join(filter(None, (node_path(tip), tip.feedback_message))))
         return statuses
 
     def close(self) -> None:

@@ -14,7 +14,7 @@ import pytest
 
 from robobt.skills import FaceBall, HasBall, Skill, Store
 from robobt.testing import Ticker, frame, held, robot
-from robobt.tree import Status, TreeError, Wait
+from robobt.tree import Selector, Status, TreeError, Wait
 
 ROOT = Path(__file__).parents[2]
 S, F, R = Status.SUCCESS, Status.FAILURE, Status.RUNNING
@@ -88,6 +88,15 @@ def test_a_skill_that_raises_fails_the_test(tick_on: Ticker) -> None:
         tick_on(Raises(), [frame(robot())])
 
 
+def test_a_status_comes_with_what_the_node_said_that_decided(tick_on: Ticker) -> None:
+    me = robot()
+    found = tick_on(Selector("try", memory=False, children=[HasBall(), FaceBall()]), [frame(me, (0.0, 2.0))])
+    assert found == [R]
+    assert found.said == ["try/FaceBall: turning"]
+    found = tick_on(HasBall(), [frame(me, held(me)), frame(me, (3.0, 0.0))])
+    assert found.said == ["HasBall", "HasBall: it does not have the ball"]
+
+
 def pytest_in(folder: Path, *options: str) -> str:
     """What pytest says in a folder, told of the plugin by the name that the entry point has."""
     command = [sys.executable, "-m", "pytest", "-q", "-p", "robobt.testing.plugin", *options]
@@ -111,6 +120,25 @@ def test_the_plugin_imports_nothing_heavy() -> None:
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout == "set()\n"
+
+
+@pytest.mark.integration
+def test_a_wrong_status_is_reported_with_the_reason_of_the_skill(tmp_path: Path) -> None:
+    (tmp_path / "test_it.py").write_text(
+        "from robobt import Skill, Status\n"
+        "from robobt.testing import frame, held, robot\n"
+        "class Carry(Skill):\n"
+        "    def on_running(self):\n"
+        "        return self.run('carries it') if self.me.ball_contact else self.fail('lost the ball')\n"
+        "def test_it(tick_on):\n"
+        "    near, held_by = robot(), robot(contact=True)\n"
+        "    frames = [frame(held_by, held(held_by)), frame(near, held(near))]\n"
+        "    assert tick_on(Carry(), frames) == [Status.RUNNING, Status.RUNNING]\n"
+    )
+    said = pytest_in(tmp_path)
+    assert "E       assert [RUNNING, FAILURE] == [RUNNING, RUNNING]" in said
+    assert "E         tick 1: FAILURE (Carry: lost the ball), not RUNNING" in said
+    assert "tick 0" not in said
 
 
 @pytest.mark.integration
