@@ -163,7 +163,7 @@ class Stream:
         return True
 
     def _stand(self) -> bool:
-        """Encode where things stand, if the match has told that anew."""
+        """Encode where things stand, if the match has told it since."""
         told, self._told = self._told, None
         if told is None:
             return False
