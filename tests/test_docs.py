@@ -220,7 +220,7 @@ def test_ones_own_play_is_looked_at_and_played(tmp_path: Path, monkeypatch: pyte
     Path("my_play.py").write_text(python)
     lines = [line for kind, block in blocks if kind == "sh" for line in block.splitlines()]
     commands = [shlex.split(line)[1:] for line in lines if line.startswith("robobt ")]
-    assert len(commands) == 3
+    assert len(commands) == 4
     with temporarily(PLAYS):
         for command in commands:
             done = CliRunner().invoke(app, command)

@@ -27,17 +27,22 @@ def node_statistics(
         ScenarioError: no robot plays it, or the scenario does not fit the world.
     """
     match = MatchLoop(scenario, trial_seed(scenario.seed if seed is None else seed, 0), world_factory)
-    played = {robot: setup.play for robot, setup in scenario.robots}
+    counted = [player.robot for player in match.players] if play is None else robots_with(scenario, play)
+    if not counted:
+        there = ", ".join(dict.fromkeys([setup.play for _, setup in scenario.robots]))
+        raise scenario.error(f"no robot plays {play!r}; they play {there}", "robots")
     watched = {}
     for player in match.players:
-        if play is None or _same_play(play, played[player.robot]):
+        if player.robot in counted:
             watched[player.robot] = NodeStatistics(player.runner.root)
             player.runner.show_to(watched[player.robot])
-    if not watched:
-        there = ", ".join(dict.fromkeys(played.values()))
-        raise scenario.error(f"no robot plays {play!r}; they play {there}", "robots")
     match.play()
     return watched
+
+
+def robots_with(scenario: Scenario, play: str) -> list[RobotId]:
+    """Return the robots of a scenario that have a play, whose file may be given by another path."""
+    return [robot for robot, setup in scenario.robots if _same_play(play, setup.play)]
 
 
 def _same_play(one: str, other: str) -> bool:

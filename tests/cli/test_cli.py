@@ -490,8 +490,12 @@ class TestTree:
         explained = help_of("show")
         assert all(key in explained for key in (*counted, *node))
 
-    def test_counting_needs_a_robot_with_the_play(self, scenario: Path):
-        assert "no robot plays 'goalkeeper'" in complaint("show", "goalkeeper", "--statistics", scenario)
+    def test_a_play_that_no_robot_has_is_counted_in_place_of_the_first_robots(self, scenario: Path):
+        done = robobt("show", "goalkeeper:speed_factor=0.5", "--statistics", scenario)
+        assert done.stdout.startswith("blue 0\nnode ")
+        assert "'test' has no robot with this play; blue 0 plays it in place of scripted" in done.stderr
+        counted = told("show", "goalkeeper", "--statistics", scenario)
+        assert len(counted["robots"]["blue 0"]) == len(counted["nodes"]) > 1
 
     def test_a_skill_is_told_to_be_one_where_parameters_are_given(self):
         said = " ".join(complaint("show", "KickToTarget:speed_factor=2", code=2).split())

@@ -69,7 +69,7 @@ def show_play(text: str, out: Path | None, examined: Examined, *, as_json: bool)
         for problem in wiring:
             warn(problem)
     if examined.statistics is not None:
-        data.update(_statistics(play, examined.statistics, examined.seed, quiet=as_json))
+        data.update(_statistics(play, params, examined.statistics, examined.seed, quiet=as_json))
     if as_json:
         print_json({**data, "nodes": _nodes(root)})
     elif examined.lint:
@@ -163,12 +163,20 @@ def _print_findings(wiring: list[str], findings: list[dict[str, str]]) -> None:
         say("Nothing found.")
 
 
-def _statistics(play: str, source: str, seed: int | None, *, quiet: bool) -> dict[str, object]:
+def _statistics(
+    play: str, params: dict[str, object], source: str, seed: int | None, *, quiet: bool
+) -> dict[str, object]:
     from robobt.match import load_scenario
-    from robobt.match.node_statistics import node_statistics
+    from robobt.match.node_statistics import node_statistics, robots_with
     from robobt.worlds import sim_world
 
     scenario = load_scenario(source)
+    if not robots_with(scenario, play):
+        players = [(robot, setup) for robot, setup in scenario.robots if not setup.goalkeeper]
+        robot, setup = (players or list(scenario.robots))[0]
+        instead = f"{robot} plays it in place of {setup.play}"
+        warn(f"{scenario.name!r} has no robot with this play; {instead}")
+        scenario = scenario.with_robot(robot, play=play, **params)
     with errors.status("playing"):
         counted = node_statistics(scenario, sim_world, play, seed)
     if not quiet:
