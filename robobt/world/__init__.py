@@ -36,6 +36,7 @@ _HOMES = {
     "direction": "geometry",
     "distance": "geometry",
     "entries": "observation",
+    "has_ball": "rules",
     "own_observation": "observation",
     "wrap_angle": "geometry",
 }
@@ -52,5 +53,6 @@ if TYPE_CHECKING:
     from robobt.world.observation import Seen as Seen
     from robobt.world.observation import entries as entries
     from robobt.world.observation import own_observation as own_observation
+    from robobt.world.rules import has_ball as has_ball
 else:
     __getattr__, __dir__ = lazily(__name__, _HOMES)
