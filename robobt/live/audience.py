@@ -13,7 +13,7 @@ from websockets.asyncio.server import ServerConnection
 from websockets.exceptions import ConnectionClosed
 from websockets.frames import CloseCode
 
-from robobt.live.messages import MOST_REFUSED, Act, Layers, Past, Rest, Steer, read
+from robobt.live.messages import MOST_REFUSED, RATE, Act, Layers, Past, Rest, Steer, problem_with, read
 from robobt.live.stream import Stream
 from robobt.live.viewer import Viewer
 
@@ -21,6 +21,13 @@ MOST_VIEWERS = 50
 
 _MOST_WAITING_MESSAGES = 1000
 """Largest number of messages waiting for the match; further ones are refused."""
+
+
+_REASONS = {
+    "not steering": 'Another viewer steers; {"do": "steer"} takes over.',
+    "too many": f"A page may send {RATE:g} messages a second; this one was left out.",
+}
+"""Answers to refused messages, by the reason for which they are refused."""
 
 
 class Audience:
@@ -68,6 +75,7 @@ class Audience:
             while not reading.done():
                 await viewer.news.wait()
                 viewer.news.clear()
+                await viewer.answer()
                 if self.stream is not None:
                     await viewer.send(self.stream, self._state_for(viewer))
         except ConnectionClosed:
@@ -103,6 +111,8 @@ class Audience:
                 if reason is None:
                     continue
                 self.refused[reason] += 1
+                viewer.told_off = _REASONS.get(reason) or problem_with(data)
+                viewer.news.set()
                 viewer.refused += reason != "not steering"
                 if viewer.refused >= MOST_REFUSED:
                     await viewer.socket.close(CloseCode.POLICY_VIOLATION, "too many messages that are none")

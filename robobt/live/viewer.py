@@ -31,6 +31,7 @@ class Viewer:
         news: event set when there may be something new to send.
         layers: drawing layers that it watches.
         refused: number of refused messages.
+        told_off: why its last message was refused, until that has been sent; "" for nothing to send.
         skipped: number of times it could not keep up and got the present state instead.
     """
 
@@ -40,6 +41,7 @@ class Viewer:
         self.allowance = Allowance(now)
         self.layers: frozenset[str] = frozenset()
         self.refused = self.skipped = 0
+        self.told_off = ""
         self._stream: Stream | None = None
         self._told: dict[str, Any] = {}
         self._next = self._moves = 0
@@ -52,6 +54,12 @@ class Viewer:
         if self._stream is not None:
             self._past, self._past_end = self._stream.first, self._joined
         self.news.set()
+
+    async def answer(self) -> None:
+        """Say why a message was refused; of several that came at once only the last is answered."""
+        if self.told_off:
+            said, self.told_off = self.told_off, ""
+            await self._json({"kind": "refused", "said": said})
 
     async def send(self, stream: Stream, state: dict[str, Any]) -> None:
         """Send all new messages, and wait until they are on their way."""

@@ -86,6 +86,7 @@ class Client:
         self.hello: dict[str, Any] = {}
         self.chunks: list[dict[str, Any]] = []
         self.past: list[dict[str, Any]] | None = None
+        self.refused: list[str] = []
 
     def __enter__(self) -> Client:
         self.socket = self._connecting.__enter__()
@@ -119,5 +120,7 @@ class Client:
                 self.state = message
             case "now":
                 self.chunks += message["chunks"]
+            case "refused":
+                self.refused.append(message["said"])
             case "past":
                 self.past = (self.past or []) + message["chunks"]

@@ -2,10 +2,12 @@
 
 import json
 import random
+import re
 from collections import Counter
 from collections.abc import Iterator
 from contextlib import suppress
 from math import nan
+from pathlib import Path
 from time import perf_counter
 from typing import Any
 
@@ -13,7 +15,8 @@ import pytest
 from websockets.exceptions import ConnectionClosed
 
 from robobt.live.hands import Hands
-from robobt.live.messages import MOST_MESSAGE_BYTES, MOST_REFUSED, Message, read
+from robobt.live.messages import FORMS as FORMS_BY_NAME
+from robobt.live.messages import MOST_MESSAGE_BYTES, MOST_REFUSED, Message, problem_with, read
 from robobt.live.server import Server
 from robobt.match import MatchLoop, load_scenario
 from robobt.plays import PLAYS
@@ -112,6 +115,22 @@ def test_whatever_is_sent_is_a_message_or_none(count: int) -> None:
     print(dict(found))
     assert found["none"] > count / 3
     assert len(found) > 15
+
+
+def test_whoever_sends_no_message_is_told_what_there_is() -> None:
+    said = problem_with('{"do": "dance"}')
+    assert said.startswith('A message is a JSON object whose "do" is one of: pause, step, speed,')
+    assert problem_with("{") == problem_with("[]") == problem_with('{"on": true}') == said
+    assert problem_with('{"do": "pause"}') == "pause: on: Field required. The message takes: on."
+    assert "4096 bytes" in problem_with("x" * 5000)
+    assert all(len(problem_with(data)) < 500 for data, _ in zip(hostile(4), range(1000), strict=False))
+
+
+def test_the_page_of_the_docs_lists_every_message_and_its_fields() -> None:
+    page = (Path(__file__).parents[2] / "docs" / "live.md").read_text(encoding="utf-8")
+    rows = re.findall(r"^\| `([a-z]+)` \|([^|]*)\|", page, re.MULTILINE)
+    listed = {do: set(re.findall(r"`([a-z]+)", taken)) for do, taken in rows if do in FORMS_BY_NAME}
+    assert listed == {do: {*form.model_fields} - {"do"} for do, form in FORMS_BY_NAME.items()}
 
 
 @pytest.mark.parametrize("count", [60, pytest.param(3000, marks=pytest.mark.slow)])

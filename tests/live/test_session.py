@@ -140,6 +140,17 @@ def test_a_match_that_waits_shows_its_start_and_what_is_moved() -> None:
         assert saved.truth.ball[0, :2] == pytest.approx((-1.25, 0.5), abs=0.001)
 
 
+def test_a_message_that_is_none_is_answered() -> None:
+    with playing("striker_vs_goalkeeper", paused=True) as session, Client(session.server.url) as client:
+        client.read(lambda it: it.state.get("steers"))
+        client.ask(do="dance")
+        client.read(lambda it: it.refused)
+        assert "is one of: pause, step" in client.refused[-1]
+        with Client(session.server.url) as other:
+            other.ask(do="step")
+            other.read(lambda it: it.refused == ['Another viewer steers; {"do": "steer"} takes over.'])
+
+
 def ball_of(client: Client) -> tuple[float, float]:
     """Where the newest frame of a page has the ball [m]."""
     x, y = np.frombuffer(base64.b64decode(client.chunks[-1]["ball"]), "<i2")[-4:-2] / 1000.0

@@ -139,6 +139,7 @@ on("state", message => {
   heard = now.said ? now.said[0] : 0;
   showState();
 });
+on("refused", message => say(message.said));
 on("found", () => {
   link = "found";
   /* A training shows nothing before its first evaluation, a field nothing before all is set up. */
