@@ -2,8 +2,8 @@
 # # Train a skill and drop it in
 #
 # Go-To-Ball is learned by DDPG in the vectorised environment, in about half a minute. All settings of a
-# run, with their units, are in the [reference](../reference/files.md); rewards of your own are [a wrapper
-# away](../environments.md#a-reward-term-of-your-own).
+# run, with their units, are in [Files](../reference/files.md), a page of the site that `make docs` builds;
+# rewards of your own are [a wrapper away](../environments.md#a-reward-term-of-your-own).
 
 # %%
 import shutil

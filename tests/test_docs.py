@@ -149,6 +149,14 @@ def test_its_links_lead_somewhere(page: str) -> None:
             assert anchor in [ANCHOR.sub("", text.lower()).replace(" ", "-") for text in headings], target
 
 
+@pytest.mark.parametrize("place", [*PAGES, "examples/05_train_a_skill.py"])
+def test_a_link_to_a_page_that_is_made_says_how_to_make_it(place: str) -> None:
+    """In a clone there is no such page."""
+    text = " ".join((PAGES.get(place) or ROOT / place).read_text().replace("\n# ", " ").split())
+    for after in re.split(r"\]\((?:\.\./)?reference/[^)]+\)", text)[1:]:
+        assert "`make docs` builds" in after[:60], place
+
+
 def pages(nav: list[Any]) -> set[str]:
     found: set[str] = set()
     for entry in nav:
