@@ -150,9 +150,16 @@ def serve(
     Vision and tracked frames go out; grSim's packets and the simulation
     protocol come in. Robots stop a tenth of a second after their last command.
 
+    At the end each commanded robot's delay and round trips are printed: from a picture's sending to the
+    first command that comes then.
+
     Keys of --json: frames (sent), simulated_s, speed_kept (share of the speed asked for),
-    packets: for each port, what happened to them.
+    packets: for each port, what happened to them; robots: for each that was commanded delay (seconds, low and
+    high, from a command's coming until a picture shows its effect; null if not seen enough), commands,
+    lost (commands), and round_trip (count, mean, variance and maximum in seconds, and lost: pictures to which
+    no command came before the next).
     """
+    from robobt.cli.shown.round_trips import print_trips, trip_figures
     from robobt.league.log.files import LogWriter
     from robobt.league.serve.server import SimServer
 
@@ -201,6 +208,7 @@ def serve(
         "simulated_s": served.time,
         "speed_kept": server.kept,
         "packets": packets,
+        "robots": trip_figures(server),
     }
     if as_json:
         print_json(figures)
@@ -215,6 +223,7 @@ def serve(
                 f"{name}: "
                 + ", ".join(f"{number} {what}" for what, number in packets[name].items() if number)
             )
+    print_trips(server)
 
 
 def _address(option: str, text: str) -> Endpoint:

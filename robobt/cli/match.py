@@ -27,13 +27,16 @@ from robobt.cli.option_groups.page import Page
 from robobt.cli.option_groups.refereeing import Refereeing
 from robobt.cli.option_groups.scenario import TeamChanges
 from robobt.cli.outputs import PAGES, RECORDING, make_folders
+from robobt.cli.shown.round_trips import delay_figures, print_delays
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from robobt.match import Scenario
+    from robobt.match import MatchLoop, Scenario
     from robobt.match.refereeing import RefereeFactory
     from robobt.match.results.results import MatchResult
+    from robobt.world.delay import MeasuredDelay
+    from robobt.world.state import RobotId
 
 
 def match(
@@ -70,7 +73,8 @@ def match(
     teams: with a referee, for blue and yellow the figures of 'robobt record statistics', each with n, mean
     and variance;
     real_time_factor: simulated time over wall time, in each process; trace: a hash that
-    is equal for equal runs; recording: the file written, or null.
+    is equal for equal runs; recording: the file written, or null; delays: where they are measured, each
+    robot's delay from a command to its seen effect (seconds, low, high; null if not seen enough).
 
     Exit code 3 when a robot's tree failed in some tick, though all trials were played.
     """
@@ -138,6 +142,7 @@ def _play_trials(
     processes = run.processes(count, where.alone)
     file, layers = kept.recording(loaded.name, count), layer_names(kept.record_layers)
     make_folders({"--record": file, "--out": kept.out})
+    delays: dict[RobotId, MeasuredDelay | None] = {}
     with tempfile.TemporaryDirectory() as folder:
         as_page = file is not None and file.name.lower().endswith(PAGES)
         recording = Path(folder) / f"trial{RECORDING}" if as_page else file
@@ -148,6 +153,8 @@ def _play_trials(
 
                 server = stack.enter_context(page.server())
                 play = Live(server, where.speed_factor, where.paused).conduct
+            if processes == 1:
+                play = _asking(play, delays)
             progress = stack.enter_context(Progress(loaded.name, count))
             played = run_trials_in(
                 loaded,
@@ -175,10 +182,12 @@ def _play_trials(
             "requested": count,
             "interrupted": played.interrupted,
             "recording": None if written is None else str(written),
+            "delays": delay_figures(delays),
         }
         print_json({**summary.to_json(), **extra})
     else:
         print_summary(summary, played, count)
+        print_delays(delays)
         if written is not None:
             say(f"Recording of trial {kept.trial}: {written}")
     failed = tell_failures(summary, loaded.on_error)
@@ -186,6 +195,19 @@ def _play_trials(
         raise typer.Exit(130)
     if failed:
         raise typer.Exit(TREES_FAILED)
+
+
+def _asking(
+    play: Callable[[MatchLoop], MatchResult], delays: dict[RobotId, MeasuredDelay | None]
+) -> Callable[[MatchLoop], MatchResult]:
+    """Return what plays a match, and then enters the robots' delays as they are known there."""
+
+    def play_and_ask(match: MatchLoop) -> MatchResult:
+        result = play(match)
+        delays.update(match.world.delays())
+        return result
+
+    return play_and_ask
 
 
 def _changed(scenario: Scenario, trees: Trees) -> Scenario:

@@ -24,7 +24,7 @@ from robobt.match.referee.events import RefereeEvent
 from robobt.signals import uninterrupted
 from robobt.sim.settings import SimSettings
 from robobt.world.command import KickTrigger, RobotCommand
-from robobt.world.delay import Delay
+from robobt.world.delay import MeasuredDelay
 from robobt.world.detections import Detections
 from robobt.world.field import FieldGeometry
 from robobt.world.limits import RobotLimits
@@ -219,11 +219,11 @@ class LeagueWorld(World, Closing):
         if self.connection.places:
             self._link.place([], self._placer.place_ball(x, y))
 
-    def delays(self) -> Mapping[RobotId, Delay | None]:
+    def delays(self) -> Mapping[RobotId, MeasuredDelay | None]:
         """See :meth:`robobt.world.World.delays`; they are measured whether or not frames reckon with them."""
         age = self._feed.age
         return {
-            robot: None if it is None else Delay(age + it.seconds, it.error)
+            robot: None if it is None else MeasuredDelay(age + it.seconds, it.error)
             for robot, it in self._feed.filter.delays.measured().items()
         }
 

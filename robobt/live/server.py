@@ -12,10 +12,10 @@ import gc
 import socket
 import sys
 import threading
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from contextlib import suppress
 from http import HTTPStatus
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from robobt.config.errors import RobobtError
 from robobt.config.extras import MissingExtraError
@@ -24,6 +24,10 @@ from robobt.live.audience import MOST_VIEWERS, Audience
 from robobt.live.http import RECORDING_TYPE, PageConnection, file_response, response, without_body
 from robobt.live.messages import MOST_MESSAGE_BYTES
 from robobt.live.stream import Stream
+from robobt.world.state import RobotId
+
+if TYPE_CHECKING:
+    from robobt.world.delay import MeasuredDelay
 
 try:
     from websockets.asyncio.server import Server as SocketServer
@@ -113,6 +117,15 @@ class Server:
         known = self.audience.state
         if any(known.get(name, self) != value for name, value in state.items()):
             self.audience.state = {**known, **state}
+
+    def tell_delays(self, delays: Mapping[RobotId, MeasuredDelay | None]) -> None:
+        """Send each robot's delay and half its 95 % interval [s]; if ``delays`` is empty, nothing."""
+        if delays:
+            told = {
+                str(robot): None if it is None else [round(it.seconds, 4), round(it.high - it.seconds, 4)]
+                for robot, it in delays.items()
+            }
+            self.tell(delays=told)
 
     def say(self, text: str) -> None:
         """Show the viewers a ``text`` for a moment."""

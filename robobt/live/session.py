@@ -25,7 +25,7 @@ LOOK = 1.5
 LATE = 0.005
 """Delay from which a tick counts as late [s]."""
 
-_TELL_DELAYS = 60
+_TICKS_TO_DELAYS = 60
 """Number of ticks after which measured delays are sent again."""
 
 _GIVE_UP = 0.25
@@ -157,8 +157,8 @@ class Live:
             return False
         self._until_delays -= 1
         if self._until_delays <= 0:
-            self._until_delays = _TELL_DELAYS
-            self._tell_delays(match)
+            self._until_delays = _TICKS_TO_DELAYS
+            self._server.tell_delays(match.world.delays())
         self._pace()
         return True
 
@@ -248,16 +248,6 @@ class Live:
         if len(self._named) != self._known:
             self._known = len(self._named)
             self._server.tell(layers=sorted(self._named))
-
-    def _tell_delays(self, match: MatchLoop) -> None:
-        """Send each robot's delay and half its 95 % interval [s], where delays are measured."""
-        delays = match.world.delays()
-        if delays:
-            told = {
-                str(robot): None if it is None else [round(it.seconds, 4), round(it.high - it.seconds, 4)]
-                for robot, it in delays.items()
-            }
-            self._server.tell(delays=told)
 
     def _do(self, act: Act, arrived: float, match: MatchLoop) -> None:
         self._attentive = True

@@ -27,7 +27,7 @@ from robobt.world.state import RobotId as RobotId
 from robobt.world.state import RobotState as RobotState
 
 _HOMES = {
-    "Delay": "delay",
+    "MeasuredDelay": "delay",
     "DelayWatch": "delay",
     "FloatArray": "geometry",
     "GO_TO_BALL": "features",
@@ -42,8 +42,8 @@ _HOMES = {
 }
 
 if TYPE_CHECKING:
-    from robobt.world.delay import Delay as Delay
     from robobt.world.delay import DelayWatch as DelayWatch
+    from robobt.world.delay import MeasuredDelay as MeasuredDelay
     from robobt.world.features import GO_TO_BALL as GO_TO_BALL
     from robobt.world.geometry import FloatArray as FloatArray
     from robobt.world.geometry import Point as Point

@@ -23,13 +23,13 @@ import numpy as np
 
 from robobt.world.command import RobotCommand
 from robobt.world.delay_evidence import judge
-from robobt.world.delay_hypotheses import HYPOTHESIS, SENDING, SIGHT, advance, nearest, start
+from robobt.world.delay_hypotheses import HYPOTHESIS, SEEN_ROBOT, SENDING, advance, nearest, start
 from robobt.world.geometry import FloatArray
 from robobt.world.limits import DEFAULT_LIMITS, RobotLimits
 from robobt.world.records import limits_of
 from robobt.world.state import RobotId
 
-_GRID = np.arange(0.0, 0.24 + 1e-9, 0.003)
+_COMPARED = np.arange(0.0, 0.24 + 1e-9, 0.003)
 """Delays that are compared [s]."""
 
 _LONGEST_GAP = 0.2
@@ -38,13 +38,13 @@ _LONGEST_GAP = 0.2
 _PUT_ELSEWHERE = 0.3
 """A robot seen this far from where every command would have it was put there, or hit [m]."""
 
-_SURE = 0.8
+_LEAST_SHARE = 0.8
 """Share of the belief about its peak from which on a delay counts as measured ..."""
 
 _SHARP = 0.01
 """... and the largest standard deviation there [s]."""
 
-_NEAR = 0.02
+_SAME_DELAY = 0.02
 """A delay that is known stays so, however much the belief spreads, while its peak is this near [s]."""
 
 _CONFIRMED = 0.2
@@ -62,7 +62,7 @@ _MOST_SENT = 64
 _DOUBLE = np.dtype(np.float64).itemsize
 
 
-class Delay(NamedTuple):
+class MeasuredDelay(NamedTuple):
     """A measured delay.
 
     Attributes:
@@ -134,7 +134,7 @@ class DelayWatch:
         if watch is not None:
             watch.see(time, x, y, heading)
 
-    def of(self, robot: RobotId) -> Delay | None:
+    def of(self, robot: RobotId) -> MeasuredDelay | None:
         """Return a robot's delay; None while too little was seen.
 
         Args:
@@ -159,7 +159,7 @@ class DelayWatch:
         excess = [delay.seconds - self._expected(other) for other, delay in others if delay is not None]
         return self._expected(robot) + (median(excess) if excess else 0.0)
 
-    def measured(self) -> dict[RobotId, Delay | None]:
+    def measured(self) -> dict[RobotId, MeasuredDelay | None]:
         """Return the delay of each robot that was commanded; None while too little was seen."""
         return {robot: watch.delay for robot, watch in sorted(self._robots.items())}
 
@@ -179,13 +179,13 @@ class _RobotWatch:
     """Measures one robot's delay; what was measured last stays known while the robot stands."""
 
     def __init__(self, limits: RobotLimits) -> None:
-        self.delay: Delay | None = None
+        self.delay: MeasuredDelay | None = None
         self._limits: FloatArray = limits_of(limits)
-        self._rows: FloatArray = np.zeros((len(_GRID), HYPOTHESIS.itemsize // _DOUBLE))
+        self._rows: FloatArray = np.zeros((len(_COMPARED), HYPOTHESIS.itemsize // _DOUBLE))
         hypotheses = self._rows.view(HYPOTHESIS)[:, 0]
-        hypotheses["delay"] = _GRID
+        hypotheses["delay"] = _COMPARED
         hypotheses["misfit"] = hypotheses["turn_misfit"] = 1.0
-        self._seen: FloatArray = np.zeros(SIGHT.itemsize // _DOUBLE)
+        self._seen: FloatArray = np.zeros(SEEN_ROBOT.itemsize // _DOUBLE)
         self._sendings: FloatArray = np.zeros((2 * _MOST_SENT, SENDING.itemsize // _DOUBLE))
         self._first = self._end = 0
         self._time = self._candidate_since = -inf
@@ -217,9 +217,9 @@ class _RobotWatch:
             start(self._rows, seen)
             return
         delay, deviation, share = judge(self._rows, seen, time - before)
-        sure = share > _SURE and deviation < _SHARP
-        known = self.delay is not None and abs(delay - self.delay.seconds) < _NEAR
-        if not sure or abs(delay - self._candidate) > _NEAR:
+        sure = share > _LEAST_SHARE and deviation < _SHARP
+        known = self.delay is not None and abs(delay - self.delay.seconds) < _SAME_DELAY
+        if not sure or abs(delay - self._candidate) > _SAME_DELAY:
             self._candidate, self._candidate_since = delay, time
         if known or (sure and time - self._candidate_since > _CONFIRMED):
-            self.delay = Delay(delay, hypot(deviation, _LEAST_ERROR))
+            self.delay = MeasuredDelay(delay, hypot(deviation, _LEAST_ERROR))

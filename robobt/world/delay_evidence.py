@@ -11,7 +11,14 @@ from math import exp, log, log1p, pi, sqrt
 from typing import Any
 
 from robobt.world.compiled import compiled_lean
-from robobt.world.delay_hypotheses import HEADING_NOISE, HYPOTHESIS, NOISE, SIGHT, Hypothesis, Spread
+from robobt.world.delay_hypotheses import (
+    HEADING_NOISE,
+    HYPOTHESIS,
+    NOISE,
+    SEEN_ROBOT,
+    Hypothesis,
+    Uncertainty,
+)
 from robobt.world.geometry import FloatArray
 
 _ACCELERATION_NOISE, _TURN_ACCELERATION_NOISE = 1.7, 10.0
@@ -44,7 +51,7 @@ def judge(hypotheses_: FloatArray, sight_: FloatArray, dt: float) -> tuple[float
 
     Args:
         hypotheses_: (n, ...) of :class:`Hypothesis`; changed.
-        sight_: a :class:`Sight`; its uncertainty is changed.
+        sight_: a :class:`SeenRobot`; its uncertainty is changed.
         dt: since the last detection [s].
 
     Returns:
@@ -52,7 +59,7 @@ def judge(hypotheses_: FloatArray, sight_: FloatArray, dt: float) -> tuple[float
         belief lies there.
     """
     rows: Any = hypotheses_.view(HYPOTHESIS)
-    hypotheses, sight = rows[:, 0], sight_.view(SIGHT)[0]
+    hypotheses, sight = rows[:, 0], sight_.view(SEEN_ROBOT)[0]
     _grow(sight.place, _ACCELERATION_NOISE, dt)
     _grow(sight.turn, _TURN_ACCELERATION_NOISE, dt)
     variance = sight.place.pp + NOISE * NOISE
@@ -137,7 +144,7 @@ def _read(hypotheses: Sequence[Hypothesis]) -> tuple[float, float, float]:
 
 
 @compiled_lean
-def _grow(spread: Spread, noise: float, dt: float) -> None:
+def _grow(spread: Uncertainty, noise: float, dt: float) -> None:
     """Let an uncertainty grow for ``dt`` [s] under an acceleration noise."""
     q = noise * noise
     spread.pp += dt * (2.0 * spread.pv + dt * (spread.vv + 0.25 * q * dt * dt))
@@ -146,7 +153,7 @@ def _grow(spread: Spread, noise: float, dt: float) -> None:
 
 
 @compiled_lean
-def _shrink(spread: Spread, gain: float, speed_gain: float) -> None:
+def _shrink(spread: Uncertainty, gain: float, speed_gain: float) -> None:
     """Let an uncertainty shrink after a correction with these gains."""
     spread.vv -= speed_gain * spread.pv
     spread.pv *= 1.0 - gain

@@ -27,7 +27,7 @@ _START_SPEED, _START_TURN = 2.0, 5.0
 """Standard deviations of the velocity of a robot that has just been seen for the first time [m/s, rad/s]."""
 
 
-class Spread(Protocol):
+class Uncertainty(Protocol):
     """Covariance of a position and its velocity: the variances ``pp`` and ``vv``, and ``pv``."""
 
     pp: float
@@ -68,7 +68,7 @@ class Sending(Protocol):
     time: float
 
 
-class Sight(Protocol):
+class SeenRobot(Protocol):
     """What was seen of a robot, and what is known of it under every hypothesis alike.
 
     Attributes:
@@ -79,11 +79,11 @@ class Sight(Protocol):
     x: float
     y: float
     heading: float
-    place: Spread
-    turn: Spread
+    place: Uncertainty
+    turn: Uncertainty
 
 
-HYPOTHESIS, SENDING, SIGHT = record_dtype(Hypothesis), record_dtype(Sending), record_dtype(Sight)
+HYPOTHESIS, SENDING, SEEN_ROBOT = record_dtype(Hypothesis), record_dtype(Sending), record_dtype(SeenRobot)
 
 
 @compiled_lean
@@ -147,9 +147,9 @@ def start(hypotheses_: FloatArray, sight_: FloatArray) -> None:
 
     Args:
         hypotheses_: (n, ...) of :class:`Hypothesis`; changed.
-        sight_: a :class:`Sight`; its uncertainty is changed.
+        sight_: a :class:`SeenRobot`; its uncertainty is changed.
     """
-    hypotheses, sight = hypotheses_.view(HYPOTHESIS)[:, 0], sight_.view(SIGHT)[0]
+    hypotheses, sight = hypotheses_.view(HYPOTHESIS)[:, 0], sight_.view(SEEN_ROBOT)[0]
     for i in range(len(hypotheses)):
         robot = hypotheses[i].robot
         robot.x, robot.y, robot.heading = sight.x, sight.y, sight.heading
@@ -165,9 +165,9 @@ def nearest(hypotheses_: FloatArray, sight_: FloatArray) -> float:
 
     Args:
         hypotheses_: (n, ...) of :class:`Hypothesis`.
-        sight_: a :class:`Sight`.
+        sight_: a :class:`SeenRobot`.
     """
-    hypotheses, sight = hypotheses_.view(HYPOTHESIS)[:, 0], sight_.view(SIGHT)[0]
+    hypotheses, sight = hypotheses_.view(HYPOTHESIS)[:, 0], sight_.view(SEEN_ROBOT)[0]
     square = 1e9
     for i in range(len(hypotheses)):
         robot = hypotheses[i].robot

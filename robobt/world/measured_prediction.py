@@ -8,7 +8,7 @@ from math import inf
 from statistics import fmean
 
 from robobt.world.command import RobotCommand
-from robobt.world.delay import Delay, DelayWatch
+from robobt.world.delay import DelayWatch, MeasuredDelay
 from robobt.world.detections import Detections
 from robobt.world.limits import RobotLimits
 from robobt.world.prediction import PredictedWorld
@@ -62,10 +62,10 @@ class MeasuredWorld(PredictedWorld):
         self._pictures.clear()
         return pictures
 
-    def delays(self) -> Mapping[RobotId, Delay | None]:
+    def delays(self) -> Mapping[RobotId, MeasuredDelay | None]:
         """See :meth:`robobt.world.World.delays`."""
         return {
-            robot: None if it is None else Delay(self._age + it.seconds, it.error)
+            robot: None if it is None else MeasuredDelay(self._age + it.seconds, it.error)
             for robot, it in self._watch.measured().items()
         }
 

@@ -13,7 +13,7 @@ from robobt.world.sketch import Sketch
 from robobt.world.state import Frame, RobotId
 
 if TYPE_CHECKING:
-    from robobt.world.delay import Delay
+    from robobt.world.delay import MeasuredDelay
 
 
 @dataclass(slots=True)
@@ -139,7 +139,7 @@ class World(Protocol):
         """Return what cameras saw since this was asked last; empty where that is unknown, or the truth."""
         return ()
 
-    def delays(self) -> Mapping[RobotId, Delay | None]:
+    def delays(self) -> Mapping[RobotId, MeasuredDelay | None]:
         """Return each commanded robot's whole delay, from a command to its seen effect.
 
         It is empty where none is measured, and None for a robot of which too little was seen.
@@ -235,7 +235,7 @@ class WrappedWorld(World):
         """See :meth:`World.detections`."""
         return self.world.detections()
 
-    def delays(self) -> Mapping[RobotId, Delay | None]:
+    def delays(self) -> Mapping[RobotId, MeasuredDelay | None]:
         """See :meth:`World.delays`."""
         return self.world.delays()
 

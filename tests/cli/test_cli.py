@@ -583,6 +583,16 @@ class TestErrors:
         assert "Traceback" in run.stderr
 
 
+def test_a_match_tells_the_delays_that_it_has_measured():
+    usual = "match", "striker_vs_goalkeeper", "--trials", "1", "--set", "ends.time_limit=4"
+    assert told(*usual)["delays"] == {}
+    arguments = *usual, "--set", "predict=measured"
+    delay = told(*arguments)["delays"]["blue 0"]
+    assert delay["low"] < delay["seconds"] < delay["high"]
+    assert delay["seconds"] < 0.01
+    assert "blue 0" in robobt(*arguments).stdout
+
+
 def test_models_lie_where_the_package_looks_for_them():
     assert models_folder().is_dir()
 

@@ -65,6 +65,7 @@ def test_serve_says_what_it_served_and_logs_it(tmp_path: Path) -> None:
     assert printed["frames"] >= 5
     assert printed["simulated_s"] == pytest.approx(printed["frames"] / 60)
     assert printed["packets"]["grsim"]["accepted"] == 0
+    assert printed["robots"] == {}
     assert {record.kind for record in read_log(log)} == {3, 4, 5}
     page = tmp_path / "game.html"
     assert robobt("show", log) == f"Page: {page}\n"

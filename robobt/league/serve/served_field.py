@@ -10,6 +10,7 @@ from math import isfinite
 
 import numpy as np
 
+from robobt.league.serve.round_trips import TripWatch
 from robobt.league.wire.commands import BallTeleport, Teleport, clamp_command
 from robobt.sim.arenas import Arenas
 from robobt.sim.records import COMMAND, size
@@ -50,6 +51,7 @@ class ServedField:
         command_loss: share of the commands that get lost.
         kicked: who kicked during the last step.
         chipped: who of them chipped.
+        trips: round trips, and how late the robots obey.
 
     Raises:
         ValueError: the placement does not fit the field.
@@ -73,6 +75,7 @@ class ServedField:
         self._index = {robot: i for i, robot in enumerate(self._ids)}
         given = limits or {}
         self._limits = [given.get(robot, self.settings.limits) for robot in self._ids]
+        self.trips = TripWatch(self.settings, given)
         self._present = np.zeros(len(self._ids), dtype=np.bool_)
         self._commands = np.zeros((1, len(self._ids), size(COMMAND)))
         self._last_command = np.full(len(self._ids), -np.inf)
@@ -97,7 +100,9 @@ class ServedField:
         i = self._index.get(robot)
         if i is None or not self._present[i] or not command.finite():
             return False
-        if self.command_loss > 0.0 and self._rng.random() < self.command_loss:
+        lost = self.command_loss > 0.0 and self._rng.random() < self.command_loss
+        self.trips.commanded(robot, command, self.time, lost)
+        if lost:
             return True
         command = clamp_command(command, self._limits[i], self.settings.kicker)
         self._commands[0, i] = (

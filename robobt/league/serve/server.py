@@ -28,6 +28,8 @@ from robobt.league.wire.tracker import write_tracked
 from robobt.league.wire.vision import CameraFrame, write_vision
 from robobt.match.referee.settings import RefereeSettings
 from robobt.signals import check, uninterrupted
+from robobt.world.delay import MeasuredDelay
+from robobt.world.state import RobotId
 
 Clock = Literal["sim", "unix"]
 """What timestamps count from: the start of the simulation, as grSim's, or 1970."""
@@ -102,6 +104,7 @@ class SimServer(Closing):
         # Packets on their way: when they are due, their order, sender and data.
         self._outbox: list[tuple[float, int, Sender, bytes]] = []
         self._order = count()
+        self._pictured = -1.0
 
     @property
     def speed(self) -> float:
@@ -168,6 +171,7 @@ class SimServer(Closing):
         delay, admitted = realism.vision_delay, realism.processing_time
         sent = now + delay
         truth = field.truth()
+        field.trips.stepped(now, truth.robots())
         captured = stamped if admitted is None else stamped + delay - admitted
         frames = self._cameras.capture(truth, captured, stamped + delay)
         geometry = None
@@ -196,10 +200,21 @@ class SimServer(Closing):
         while self._outbox and self._outbox[0][0] <= time + 1e-9:
             due, _, sender, data = heapq.heappop(self._outbox)
             self._send(due, sender, data)
+            if sender is self._vision and due > self._pictured:
+                # The pictures of several cameras, of one instant, are one.
+                self._pictured = due
+                self.field.trips.picture_sent()
 
     def close(self) -> None:
         """Release all ports."""
         self._opened.close()
+
+    def delays(self) -> dict[RobotId, MeasuredDelay | None]:
+        """Return each commanded robot's delay, from a command's coming until a picture shows its effect.
+
+        It is None for a robot of which too little was seen.
+        """
+        return self.field.trips.delays(self._cameras.realism.vision_delay)
 
     def _send(self, due: float, sender: Sender, data: bytes) -> None:
         with uninterrupted:

@@ -13,6 +13,9 @@ from robobt.match.recording import RecordedRobot, RecordingHeader
 from robobt.match.recording.capture import Capture
 from robobt.world.state import Frame, RobotId
 
+_STEPS_TO_DELAYS = 60
+"""Number of steps after which the robots' delays are sent again."""
+
 
 class WatchedField:
     """Shows a served field to a server's viewers; called after every step.
@@ -28,6 +31,7 @@ class WatchedField:
         self._capture: Capture | None = None
         self._robots: frozenset[RobotId] = frozenset()
         self._grip = HeldObjects()
+        self._ticks = 0
         server.tell(paused=False, speed=1.0, movable=True, orders=False, plays=[], over=None, span=None)
 
     def __call__(self, field: ServedField) -> None:
@@ -43,6 +47,9 @@ class WatchedField:
         for robot in field.kicked:
             capture.event("kick", truth.time, robot=robot)
         capture.tick(truth)
+        self._ticks += 1
+        if self._ticks % _STEPS_TO_DELAYS == 0:
+            self._server.tell_delays(field.trips.delays(field.settings.realism.vision_delay))
 
     def _captured(self, truth: Frame, period: float) -> Capture:
         """Return the capture of the field, a new one if a robot has appeared for the first time."""
