@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import fields
+from dataclasses import fields, replace
 from functools import partial
 from statistics import fmean
 from typing import Annotated, Any
@@ -21,6 +21,7 @@ from robobt.sim import SimWorld
 from robobt.statistics import mean_interval
 from robobt.world.delay import DelayWatch
 from robobt.world.game import Team
+from robobt.world.geometry import wrap_angle
 from robobt.world.limits import RobotLimits
 from robobt.world.measured_prediction import MeasuredWorld
 from robobt.world.prediction import PredictedWorld
@@ -60,15 +61,24 @@ class _LateBlue(LateCommands):
         super().__init__(field, lambda robot, _: extra if robot.team is Team.BLUE else 0.0, parts=1)
 
 
+def _coasting(robot: RobotState, seconds: float) -> RobotState:
+    """Return where a robot whose commands are unknown will be after a time [s]."""
+    x, y = robot.x + seconds * robot.vx, robot.y + seconds * robot.vy
+    return replace(robot, x=x, y=y, heading=wrap_angle(robot.heading + seconds * robot.omega))
+
+
 class _Known(PredictedWorld):
-    """Blue reckons with a delay that it knows."""
+    """Blue reckons with a delay that it knows; of yellow's commands it knows nothing."""
 
     def __init__(self, world: World, extra: float) -> None:
         super().__init__(world, 0.0)
         self._extra = extra
 
+    def _moved(self, robot: RobotId, seen: RobotState) -> RobotState:
+        return super()._moved(robot, seen) if robot.team is Team.BLUE else _coasting(seen, self._extra)
+
     def _delay(self, robot: RobotId, limits: RobotLimits) -> float:  # noqa: ARG002
-        return self._extra if robot.team is Team.BLUE else 0.0
+        return self._extra
 
     def _ball_age(self, robots: tuple[RobotState, ...]) -> float:  # noqa: ARG002
         return self._extra
@@ -77,8 +87,11 @@ class _Known(PredictedWorld):
 class _Measured(MeasuredWorld):
     """Blue reckons with the delays that it measures; of yellow's commands it knows nothing."""
 
-    def _delay(self, robot: RobotId, limits: RobotLimits) -> float:
-        return super()._delay(robot, limits) if robot.team is Team.BLUE else 0.0
+    def _moved(self, robot: RobotId, seen: RobotState) -> RobotState:
+        if robot.team is Team.BLUE:
+            return super()._moved(robot, seen)
+        # Blue's robots have been moved before.
+        return _coasting(seen, self._ball_age(()))
 
 
 class _ForBlueOnly(WrappedWorld):
