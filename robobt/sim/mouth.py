@@ -129,7 +129,8 @@ def kick(
 
     Of its sideways velocity, seen by the robot's front, it keeps the share ``limits.touch_kept``. The kick
     adds the share ``limits.touch_returned`` of the speed at which it comes, or ``limits.carried`` of the
-    speed at which it moves ahead with the robot; what is carried may exceed the kicker's own limit.
+    speed at which it moves ahead with the robot, as a resting ball does that the robot drives into; what is
+    carried may exceed the kicker's own limit.
 
     Args:
         body: of the ball.
@@ -153,6 +154,9 @@ def kick(
     c, s = cos(robot.heading), sin(robot.heading)
     forward = c * ball.vx + s * ball.vy
     sideways = c * ball.vy - s * ball.vx
+    if forward >= 0.0 and limits.carried > 0.0:
+        # The front has pushed the ball by the time that the kicker sends it off.
+        forward = max(forward, c * robot.vx + s * robot.vy)
     if forward > 0.0:
         most += max(0.0, limits.carried * forward)
         forward = speed + limits.carried * forward

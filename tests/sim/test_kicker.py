@@ -132,6 +132,18 @@ def test_a_kick_adds_to_the_speed_of_a_ball_that_moves_ahead(carried: float | No
     assert world.truth().ball.vx == pytest.approx(4.0 + faster, abs=0.15)
 
 
+@pytest.mark.parametrize(("carried", "faster"), [(None, 0.0), (0.9, 0.9)])
+def test_a_kick_adds_the_speed_of_a_robot_that_drives_into_the_ball(
+    carried: float | None, faster: float
+) -> None:
+    world = one_robot(settings_from({"limits": {"kick_carried": carried}}))
+    while not world.kicks:
+        if world.truth().own[0].speed < 0.99:
+            world.put_ball(world.truth().own[0].x + 0.2, 0.0, 0.0, 0.0)
+        world.act({ME: RobotCommand(vx=1.0, kick_speed=4.0)})
+    assert world.truth().ball.vx == pytest.approx(4.0 + faster, abs=0.15)
+
+
 def test_a_carried_ball_may_leave_faster_than_the_kicker_alone_would_send_it() -> None:
     world = holding(settings_from({"limits": {"kick_carried": 1.0}, "kicker": {"max_speed": 4.0}}))
     for _ in range(60):

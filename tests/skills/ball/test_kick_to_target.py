@@ -85,6 +85,17 @@ def test_a_ball_that_moves_ahead_is_kicked_softer_by_what_the_kick_adds() -> Non
         assert alone.command.kick_speed == pytest.approx(speed)
 
 
+@pytest.mark.parametrize("ahead", [0.2, 1.0])
+def test_a_shot_in_the_run_up_breaks_no_speed_limit_where_a_kick_adds_to_the_robot_s_speed(
+    ahead: float,
+) -> None:
+    trial = alone(KickToTarget(target=GOAL), (-ahead, 0.0, 0.0), (0.0, 0.0), settings="erforce")
+    trial.run(2.0)
+    assert len(trial.kicks) == 1
+    fastest = max(frame.ball.speed for frame in trial.frames)
+    assert 6.0 < fastest <= 6.5
+
+
 def test_a_wide_shot_is_taken_sooner_than_a_narrow_one() -> None:
     me = robot(heading=radians(1.5), contact=True)
     wide, narrow = Alone(KickToTarget()), Alone(KickToTarget())
