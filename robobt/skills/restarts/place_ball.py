@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import field
-from math import copysign, cos, hypot, inf, sin
+from math import copysign, cos, hypot, inf, sin, sqrt
 
 from robobt.motion.dribbling import settle
 from robobt.motion.path_planner import travel
@@ -21,6 +21,9 @@ from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS
 
 _PLACING_SPEED = 1.0
 """Speed when driving backwards with the ball: 8 m take 10 s of the 30 s that the rules allow [m/s]."""
+
+_STOPS_WITHIN = 1.0
+"""Distance over which the robot can always stop with the ball [m]."""
 
 _BALL_IN_MOUTH_DISTANCE = ROBOT_RADIUS
 """Distance from the robot's centre to the centre of a ball in its mouth [m]."""
@@ -102,7 +105,7 @@ class PlaceBall(DrivingSkill):
                 self._holds(),
                 place,
                 self.drive_limits,
-                _PLACING_SPEED,
+                min(_PLACING_SPEED, sqrt(2.0 * me.limits.hold_acceleration * _STOPS_WITHIN)),
                 placing=True,
                 sketch=self.draw,
             )
