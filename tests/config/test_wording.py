@@ -9,8 +9,8 @@ import robobt
 from robobt.config.wording import counted
 
 NOUNS = (
-    "bodies|cells|entrants|entries|episodes|files|frames|games|goals|kicks|learners|matches|models|nodes|numbers|"
-    "packets|pairs|pictures|plays|processes|robots|rounds|runs|seeds|shots|skills|starts|states|steps|successes|"
+    "bodies|cells|entrants|entries|episodes|files|frames|games|goals|learners|matches|models|nodes|numbers|"
+    "packets|pairs|pictures|processes|robots|rounds|seeds|shots|skills|states|steps|successes|"
     "tasks|ticks|times|transitions|trials|viewers"
 )
 COUNT = re.compile(rf" (?:[a-z]+ )?(?:{NOUNS})\b")
