@@ -35,10 +35,10 @@ COMBINATIONS: dict[str, dict[str, str | None] | None] = {
     "geometric, kick": {"policy": "geometric", "shoot": "kick_to_target"},
     "geometric, kick, quick": {"policy": "geometric", "shoot": "kick_to_target", "pickup_speed": None},
     "geometric, shoot": {"policy": "geometric", "shoot": "geometric"},
-    "geometric, d4pg+td3": {"policy": "geometric", "shoot": "ddpg"},
+    "geometric, ddpg": {"policy": "geometric", "shoot": "ddpg"},
     "3-step ddpg, kick": {"policy": "ddpg", "shoot": "kick_to_target", "pickup_speed": None},
     "3-step ddpg, shoot": {"policy": "ddpg", "shoot": "geometric", "pickup_speed": None},
-    "3-step ddpg, d4pg+td3": {"policy": "ddpg", "shoot": "ddpg", "pickup_speed": None},
+    "3-step ddpg, ddpg": {"policy": "ddpg", "shoot": "ddpg", "pickup_speed": None},
 }
 """Parameters of the play go_to_ball_and_shoot, by who approaches and who shoots; None for RoboBulls' play.
 
@@ -48,7 +48,7 @@ The learned approach hands over at full speed and the pick-up goes on as fast as
 dribbler takes the ball; "quick" is the hand-written approach with that pick-up.
 """
 
-LEARNED = "3-step ddpg, d4pg+td3"
+LEARNED = "3-step ddpg, ddpg"
 HAND_WRITTEN = ("robobulls", "geometric, kick", "geometric, kick, quick", "geometric, shoot")
 
 HUMAN = "human, game controller"

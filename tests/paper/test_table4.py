@@ -33,7 +33,7 @@ from robobt.worlds import sim_world
 pytestmark = pytest.mark.integration
 
 QUICK = ("robobulls", "geometric, kick")
-SHIPPED = "3-step ddpg, d4pg+td3"
+SHIPPED = "3-step ddpg, ddpg"
 LEARNED = COMBINATIONS[SHIPPED]
 
 
