@@ -246,7 +246,8 @@ def _drive(state: RobotState, followed: FollowedCommand, command: RobotCommand, 
                 along, across = limits.braking, limits.lateral_braking
             else:
                 along, across = limits.acceleration, limits.lateral_acceleration
-            part = min(1.0, dt / (sqrt((ahead / along) ** 2 + (aside / across) ** 2) * step))
+            needed = sqrt((ahead / along) ** 2 + (aside / across) ** 2) * step
+            part = dt / needed if needed > dt else 1.0
             state.vx += dx * part
             state.vy += dy * part
         most = limits.turn_acceleration * dt

@@ -70,6 +70,15 @@ def test_a_command_delay_is_reckoned_with() -> None:
     assert off(shown, made.truth()) < 2e-3
 
 
+def test_a_speed_too_small_to_divide_by_is_predicted(monkeypatch: pytest.MonkeyPatch) -> None:
+    made = world(vision_delay=0.03)
+    drive(made, 5, RobotCommand())
+    seen = made.world.observe()
+    seen.own[0].vx = 5e-324
+    monkeypatch.setattr(made.world, "observe", lambda: seen)
+    assert made.observe().own[0].vx == pytest.approx(0.0)
+
+
 def test_a_ball_in_the_mouth_goes_with_its_robot() -> None:
     made = world(ball=(-0.5, 0.273), vision_delay=0.06)
     for _ in range(40):

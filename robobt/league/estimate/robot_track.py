@@ -265,7 +265,8 @@ def _drive(
                 along, across = limits.braking, limits.lateral_braking
             else:
                 along, across = limits.acceleration, limits.lateral_acceleration
-            share = min(1.0, dt / (sqrt((ahead / along) ** 2 + (aside / across) ** 2) * size))
+            needed = sqrt((ahead / along) ** 2 + (aside / across) ** 2) * size
+            share = dt / needed if needed > dt else 1.0
             state.vx = vx + dx * share
             state.vy = vy + dy * share
         most = limits.turn_acceleration * dt

@@ -11,6 +11,7 @@ import pytest
 from benchmarks.filter import Rms, bench_filter
 from robobt.league.estimate.ball_track import BallMotion, predict_ball
 from robobt.league.estimate.filter import VisionFilter
+from robobt.league.estimate.robot_track import RobotMotion, Sent, predict_robot
 from robobt.league.wire.vision import BallDetection, CameraFrame, RobotDetection
 from robobt.match import load_scenario
 from robobt.match.scenario.changes import with_team
@@ -20,6 +21,7 @@ from robobt.world.command import RobotCommand
 from robobt.world.field import DIVISION_B
 from robobt.world.game import Team
 from robobt.world.geometry import wrap_angle
+from robobt.world.limits import RobotLimits
 from robobt.world.sketch import Sketch
 from robobt.world.state import Frame, RobotId
 
@@ -349,6 +351,11 @@ def test_a_hidden_ball_that_is_lost_stays_where_the_robot_lost_it(watched: Watch
     frame = watched.frame()
     assert not frame.own[0].ball_contact
     assert frame.ball.x == pytest.approx(0.9 + mouth + 0.1, abs=0.05)
+
+
+def test_a_speed_too_small_to_divide_by_is_predicted() -> None:
+    still = RobotMotion(0.0, 0.0, 0.0, 5e-324, 0.0, 0.0)
+    assert predict_robot(still, 0.0, 0.1, [Sent(0.0, RobotCommand())], RobotLimits()).vx == pytest.approx(0.0)
 
 
 def test_no_robot_stands_on_a_hidden_ball(watched: Watched) -> None:
