@@ -40,7 +40,7 @@ from robobt.skills.ball.go_to_ball import (
 from robobt.skills.ball.kick_loose import FOLLOW, LOOSE_KICK_SPEED, Hold, KickLoose, has_lasted
 from robobt.skills.ball.let_go import push_speed
 from robobt.skills.ball.pick_up_ball import PickUpBall, creeping
-from robobt.skills.ball.settle_ball import SettleBall, Settling, is_settled
+from robobt.skills.ball.settle_ball import SettleBall, Settling, is_braked, is_settled
 from robobt.skills.base import heading_thereabouts
 from robobt.skills.conditions.carried_far import way_carried
 from robobt.skills.defence.wall import wall_place
@@ -327,7 +327,9 @@ def _play_the_ball(
     ):
         command.kick_speed = push_speed(me, ball)
     elif has and not is_settled(memory.settling, time, speed, _SETTLED_SPEED, _SETTLING_PAUSE):
-        _handle(team, (0.0, 0.0), me.heading, team.brakes, True, command)
+        braked = is_braked(speed, team.brakes.braking)
+        limits, gentle = (team.brakes, True) if braked else (team.own, team.own.trailing_time > 0.0)
+        _handle(team, (0.0, 0.0), me.heading, limits, gentle, command)
     elif has:
         _carry(team, movers, time, memory, command)
     elif speed >= _RECEIVABLE_SPEED and _comes(team, speed):

@@ -10,6 +10,9 @@ from robobt.tree import Status
 from robobt.world.compiled import compilable
 from robobt.world.rules import has_ball
 
+_LONGEST_WAY = 1.0
+"""Distance over which a ball may be carried. Source: RoboCup SSL rules, "Excessive Dribbling" [m]."""
+
 
 @dataclass(slots=True)
 class Settling:
@@ -30,9 +33,21 @@ def is_settled(settling: Settling, now: float, speed: float, slow: float, pause:
     return settled
 
 
+@compilable
+def is_braked(speed: float, held: float) -> bool:
+    """Return whether a dribbler that holds the ball against ``held`` can stop it within the rules' distance.
+
+    ``speed`` is the ball's [m/s], ``held`` an acceleration [m/s^2].
+    """
+    return speed * speed <= 2.0 * held * _LONGEST_WAY
+
+
 @skill
 class SettleBall(Skill):
     """Brake with the ball, as hard as the dribbler can hold it, until it is slow enough to turn with.
+
+    A ball too fast to be stopped that way within a metre, the rules' limit for dribbling, is let go: the
+    robot brakes as hard as it can, and takes the ball again once it has slowed down.
 
     FAILURE without the ball, and once it has settled until it has been lost for ``pause``: afterwards the
     robot may move with the ball at any speed. Tick it in every tick.
@@ -66,6 +81,10 @@ class SettleBall(Skill):
             return self.fail("it does not have the ball")
         if is_settled(self._settling, frame.time, ball.speed, self.slow, self.pause):
             return self.fail("the ball is settled")
-        limits = dribbling_limits(max_acceleration=self.share * me.limits.hold_acceleration)
+        held = self.share * me.limits.hold_acceleration
+        if not is_braked(ball.speed, held):
+            self.store.command = turn_with_ball(me, me.heading, me.limits, frame.period)
+            return self.run("letting it roll ahead")
+        limits = dribbling_limits(max_acceleration=held)
         self.store.command = turn_with_ball(me, me.heading, limits, frame.period)
         return self.run("braking with the ball")

@@ -7,6 +7,7 @@ import pytest
 from robobt.skills import SettleBall
 from robobt.testing import frame, held, robot
 from robobt.tree import Status
+from robobt.world import RobotLimits
 from tests.skills.fixed_world import Alone
 
 
@@ -22,6 +23,14 @@ def test_it_brakes_with_the_dribbler_on_while_the_ball_is_fast() -> None:
     assert alone.tick(frame(ME, fast())) is Status.RUNNING
     assert alone.command.vx < 2.0
     assert alone.command.dribbler
+
+
+def test_a_ball_that_a_weak_dribbler_cannot_stop_within_the_rules_is_let_go() -> None:
+    for hold, gentle in ((0.35, False), (3.0, True)):
+        alone, me = Alone(SettleBall()), robot(velocity=(1.5, 0.0, 0.0), contact=True)
+        me.limits = RobotLimits(hold_acceleration=hold)
+        assert alone.tick(frame(me, (*held(me), 1.5, 0.0), period=0.01)) is Status.RUNNING
+        assert (alone.command.vx > 1.5 - 0.01 * hold) is gentle
 
 
 def test_it_is_done_once_the_ball_is_slow_and_stays_done() -> None:
