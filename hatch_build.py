@@ -25,6 +25,7 @@ LEFT_OUT = {
     "save_ppo.pt",
     "score_on_defender_grsim_ppo.pt",
     "score_on_goalkeeper_grsim_ppo.pt",
+    "score_on_goalkeeper_robust.pt",
     "shoot_robust.pt",
     "paper_shots.parquet",
 }
