@@ -118,3 +118,13 @@ def test_clocks_are_followed() -> None:
     assert {row["speed"] for row in rows} == {0.25, 0.5, 1.0, 2.0, 4.0}
     assert all(row["mean_error"] < 0.003 for row in rows)
     assert "queued" in run("clock", "--seconds", 6).stdout
+
+
+@pytest.mark.integration
+def test_a_late_team_is_played_beside_one_that_is_not() -> None:
+    arms = "--only", "+0", "--only", "measured"
+    length = "--seconds", "10", "--matches", "1", "--workers", "1"
+    figures = told("late_team", "--scenario", "striker_vs_goalkeeper", *length, *arms)["arms"]
+    assert figures["+0"]["goals"] == [1]
+    assert figures["measured"]["goals"] in ([0], [1])
+    assert figures["measured"]["share"] == figures["measured"]["mean"]
