@@ -149,9 +149,12 @@ class LeagueWorld(World, Closing):
         """Return the field predicted to when a command sent now moves the robots, seen from blue's side.
 
         That is after the commands' delay and each robot's dead time, as in
-        :class:`~robobt.world.prediction.PredictedWorld`.
+        :class:`~robobt.world.prediction.PredictedWorld`, or after the delay that was measured in place of the
+        two.
         """
-        return self._frame(self._looked_at + self.settings.realism.command_delay, to_effect=True)
+        measured = self.connection.delay == "measured"
+        arrival = 0.0 if measured else self.settings.realism.command_delay
+        return self._frame(self._looked_at + arrival, to_effect=True)
 
     def truth(self) -> Frame:
         """Return the field at the last capture, without prediction, seen from blue's side."""
@@ -221,11 +224,7 @@ class LeagueWorld(World, Closing):
 
     def delays(self) -> Mapping[RobotId, MeasuredDelay | None]:
         """See :meth:`robobt.world.World.delays`; they are measured whether or not frames reckon with them."""
-        age = self._feed.age
-        return {
-            robot: None if it is None else MeasuredDelay(age + it.seconds, it.error)
-            for robot, it in self._feed.filter.delays.measured().items()
-        }
+        return self._feed.filter.delays.measured(self._feed.age)
 
     def draw(self, sketch: Sketch) -> None:
         """See :meth:`robobt.world.World.draw`: what the cameras reported last, and how sure the filter is."""

@@ -38,17 +38,15 @@ _LONGEST_GAP = 0.2
 _PUT_ELSEWHERE = 0.3
 """A robot seen this far from where every command would have it was put there, or hit [m]."""
 
-_LEAST_SHARE = 0.8
-"""Share of the belief about its peak from which on a delay counts as measured ..."""
-
-_SHARP = 0.01
-"""... and the largest standard deviation there [s]."""
+_LEAST_SHARE, _SHARP = 0.8, 0.01
+"""A delay counts as measured once this share of the belief lies about its peak, with a standard deviation
+below this [s]."""
 
 _SAME_DELAY = 0.02
-"""A delay that is known stays so, however much the belief spreads, while its peak is this near [s]."""
+"""While the peak stays this near to a known delay, the delay stays known, however wide the belief [s]."""
 
 _CONFIRMED = 0.2
-"""How long belief has to stay about a new delay until that counts [s]."""
+"""A new delay counts once the peak has stayed there for this long [s]."""
 
 _LEAST_ERROR = 0.0012
 """Standard error of even the best measurement, because commands take effect in steps [s]."""
@@ -90,7 +88,7 @@ class DelayWatch:
     Args:
         limits: of robots that are not named in ``own``.
         own: limits of individual robots.
-        nominal: delay to expect until one is measured, beside the robots' dead times [s].
+        nominal: delay to expect until one is measured, without the robots' dead times [s].
     """
 
     def __init__(
@@ -144,10 +142,10 @@ class DelayWatch:
         return None if watch is None else watch.delay
 
     def expected(self, robot: RobotId) -> float:
-        """Return the delay to reckon with [s].
+        """Return the delay by which to predict a robot [s].
 
-        It is the measured one. For a robot that was not seen enough it is the nominal one, and as much more
-        as is usual among the robots that were.
+        It is the measured one. For a robot that was not seen enough it is the nominal delay and its dead
+        time, plus the median of what the measured robots have beyond theirs.
 
         Args:
             robot: which.
@@ -159,9 +157,17 @@ class DelayWatch:
         excess = [delay.seconds - self._expected(other) for other, delay in others if delay is not None]
         return self._expected(robot) + (median(excess) if excess else 0.0)
 
-    def measured(self) -> dict[RobotId, MeasuredDelay | None]:
-        """Return the delay of each robot that was commanded; None while too little was seen."""
-        return {robot: watch.delay for robot, watch in sorted(self._robots.items())}
+    def measured(self, age: float = 0.0) -> dict[RobotId, MeasuredDelay | None]:
+        """Return the delay of each robot that was commanded; None while too little was seen.
+
+        Args:
+            age: of the pictures, which is added to each delay [s].
+        """
+        delays = {robot: watch.delay for robot, watch in sorted(self._robots.items())}
+        return {
+            robot: None if it is None else MeasuredDelay(age + it.seconds, it.error)
+            for robot, it in delays.items()
+        }
 
     def interrupt(self) -> None:
         """Forget where robots are, as after they were placed or the clock jumped; keep their delays."""

@@ -22,7 +22,7 @@ _MOST_PICTURES = 64
 class MeasuredWorld(PredictedWorld):
     """A world whose frames are predicted by the robots' whole delays, which it measures.
 
-    Nobody has to know how late the world is. Until a delay is measured, ``watch`` says what to reckon with.
+    Nobody has to know how late the world is. Until a delay is measured, ``watch`` says what to expect.
 
     Args:
         world: the world that is seen late, or whose robots obey late.
@@ -64,10 +64,7 @@ class MeasuredWorld(PredictedWorld):
 
     def delays(self) -> Mapping[RobotId, MeasuredDelay | None]:
         """See :meth:`robobt.world.World.delays`."""
-        return {
-            robot: None if it is None else MeasuredDelay(self._age + it.seconds, it.error)
-            for robot, it in self._watch.measured().items()
-        }
+        return self._watch.measured(self._age)
 
     def _look(self) -> Frame:
         """Look, and compare where robots are seen with what they were commanded."""

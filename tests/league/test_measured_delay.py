@@ -26,13 +26,15 @@ LATE = RealismSettings(
 )
 
 
-def played(seconds: float, **options: Any) -> tuple[LockstepWorld, list[float]]:
-    """Play three against three on a field that is late, of which the world knows nothing.
+def played(seconds: float, expected_delay: float = 0.0, **options: Any) -> tuple[LockstepWorld, list[float]]:
+    """Play three against three on a late field, of whose commands the world expects a delay [s].
 
     Return the world, and how far each robot was shown from where the next command found it [m].
     """
     scenario = load_scenario("three_v_three").lasting(seconds)
     settings = settings_from(scenario.simulator)
+    realism = settings.realism.model_copy(update={"command_delay": expected_delay})
+    settings = settings.model_copy(update={"realism": realism})
     served = served_scenario(scenario)
     late = served.settings.model_copy(update={"realism": LATE})
     served = type(served)(scenario.field, scenario.place(np.random.default_rng(1)), late)
@@ -74,6 +76,12 @@ def test_each_delay_is_measured_and_reckoned_with() -> None:
         assert measured.seconds == pytest.approx(0.088, abs=0.006)
     _, unaware = played(8.0)
     assert np.median(misses) < 0.2 * np.median(unaware)
+
+
+def test_what_is_measured_holds_the_delay_that_was_expected() -> None:
+    _, misses = played(8.0, delay="measured")
+    _, expecting = played(8.0, LATE.command_delay, delay="measured")
+    assert np.median(expecting) == pytest.approx(np.median(misses), abs=0.005)
 
 
 def test_delays_stay_known_from_one_match_to_the_next() -> None:

@@ -151,7 +151,7 @@ class VisionFilter:
             time: when they are sent [s].
             commands: by robot.
             link_delay: from there until they reach the robots [s]. They take effect after each robot's own
-                dead time; or after the delay that was measured, in place of the two.
+                dead time. Where predictions reckon with measured delays, these stand in place of the two.
         """
         self.delays.sent(time, commands)
         for robot, command in commands.items():
@@ -242,8 +242,9 @@ class VisionFilter:
 
         Args:
             time: on the vision's clock [s].
-            to_effect: whether to predict on to when a command that reaches a robot then moves it: each
-                commanded robot by its dead time, or by its measured delay, all else by the mean of these.
+            to_effect: whether to predict on to when a command moves a robot: each commanded robot by its
+                dead time, from ``time`` as the command's arrival, or by its measured delay, from ``time`` as
+                the command's sending. All else is predicted on by the mean of these.
         """
         dead = {robot: self._effect_after(robot) for robot in self._sent} if to_effect else {}
         others = fmean(dead.values()) if dead else 0.0

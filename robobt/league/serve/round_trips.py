@@ -119,7 +119,4 @@ class TripWatch:
         Args:
             age: of a picture when it is sent [s].
         """
-        return {
-            robot: None if it is None else MeasuredDelay(age + it.seconds, it.error)
-            for robot, it in self._delays.measured().items()
-        }
+        return self._delays.measured(age)
