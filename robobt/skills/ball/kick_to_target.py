@@ -53,7 +53,7 @@ _KICKED_SPEED_SHARE = 0.6
 """A ball with this share of the kick's speed towards the target has been kicked."""
 _ROLLS_AT = 0.1
 """A ball that comes no faster than this moves ahead with a robot that drives into it [m/s]."""
-_LEAST_KICK = 0.1
+LEAST_KICK = 0.1
 """Slowest kick [m/s]."""
 _CARRY_SPEED = 2.0
 _CARRY_ACCELERATION = 1.0
@@ -263,7 +263,7 @@ class KickToTarget(DrivingSkill):
         added = me.limits.touch_returned * max(-ahead, 0.0)
         if me.limits.carried > 0.0 and ahead > -_ROLLS_AT:
             added += me.limits.carried * max(ahead, c * me.vx + s * me.vy, 0.0)
-        self.store.command.kick_speed = max(_LEAST_KICK, order.speed - added)
+        self.store.command.kick_speed = max(LEAST_KICK, order.speed - added)
         self.store.command.kick_angle = order.angle
         self.store.command.kick_trigger = KickTrigger.ON_CONTACT
         if has_ball(me, ball):

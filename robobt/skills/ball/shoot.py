@@ -12,6 +12,7 @@ from pydantic import Field
 from robobt.config.validation import Settings
 from robobt.motion.dribbling import dribbling_limits, sideways_after_kick, turn_with_ball
 from robobt.motion.path_planner import TARGETS
+from robobt.skills.ball.kick_to_target import LEAST_KICK
 from robobt.skills.ball.learned_control import LearnedControl, PolicyError, find_policy, policies_by_name
 from robobt.skills.base import Skill, skill
 from robobt.skills.store import Store
@@ -118,7 +119,8 @@ class GeometricShot(Settings):
         sideways = sideways_after_kick(me, ball)
         if abs(wrap_angle(heading - me.heading - atan2(sideways, self.kick_speed))) <= tolerance:
             ahead = cos(me.heading) * ball.vx + sin(me.heading) * ball.vy
-            decided.kick_speed = self.kick_speed - max(0.0, me.limits.carried * max(ahead, 0.0))
+            added = max(0.0, me.limits.carried * max(ahead, 0.0))
+            decided.kick_speed = max(LEAST_KICK, self.kick_speed - added)
             decided.kick_trigger = KickTrigger.NOW
         return decided
 

@@ -130,6 +130,13 @@ def test_the_hand_written_policy_kicks_softer_by_what_the_kick_adds_to_a_ball_th
     assert alone.command.kick_speed == pytest.approx(shoot.GeometricShot().kick_speed - 0.9)
 
 
+def test_a_gentle_shot_is_a_kick_even_where_the_ball_is_faster_than_that() -> None:
+    alone = Alone(Shoot())
+    me = robot(3.0, 0.0, 0.0, contact=True, limits=RobotLimits(kick_carried=0.9))
+    alone.tick(frame(me, ball=(*held(me), 1.0, 0.0)))
+    assert shoot.GeometricShot(kick_speed=0.5)(alone.store).kick_speed > 0.0
+
+
 def test_what_is_no_action_fails_the_leaf_and_stops_the_robot(tmp_path: Path) -> None:
     # Entry 5 is the distance to the goal.
     module = Faulty("nan", entry=5, outputs=2)
