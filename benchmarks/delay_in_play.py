@@ -89,7 +89,7 @@ def _measured(task: tuple[int, str], _: object) -> tuple[_Miss, _Miss]:
     seed, preset = task
     scenario = load_scenario("six_v_six").lasting(_JUMPS_AT + _FOLLOWED_AFTER + 1.0)
     settings = scenario_settings(scenario, preset)
-    late = settings.realism.command_delay + (settings.limits.reaction if settings.wheels is None else 0.0)
+    late = settings.command_to_effect
     settings = settings.model_copy(update={"realism": _NOISE.model_copy(update={"command_delay": late})})
     setups = sorted(scenario.robots, key=lambda pair: pair[0])
     link = _Link({robot: late + it.limits_over(settings.limits).dead_time for robot, it in setups}, seed)

@@ -23,10 +23,8 @@ _KICK_SPEED = 6.0
 @GO_TO_BALL_POLICIES.register("script")
 def drive_straight(store: Store, approach: Approach) -> RobotCommand:
     """Drive straight at the ball as fast as the robot can, and turn to it on the way."""
-    off, limits = (
-        wrap_angle(direction(store.me.position, approach.meeting) - store.me.heading),
-        approach.limits,
-    )
+    limits = approach.limits
+    off = wrap_angle(direction(store.me.position, approach.meeting) - store.me.heading)
     omega = min(limits.max_turn, max(-limits.max_turn, _TURN_GAIN * off))
     return RobotCommand(limits.max_speed * cos(off), limits.max_speed * sin(off), omega, dribbler=True)
 

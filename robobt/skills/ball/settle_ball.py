@@ -8,10 +8,7 @@ from robobt.motion.dribbling import dribbling_limits, turn_with_ball
 from robobt.skills.base import Skill, skill
 from robobt.tree import Status
 from robobt.world.compiled import compilable
-from robobt.world.rules import has_ball
-
-_LONGEST_WAY = 1.0
-"""Distance over which a ball may be carried. Source: RoboCup SSL rules, "Excessive Dribbling" [m]."""
+from robobt.world.rules import CARRY_DISTANCE, has_ball
 
 
 @dataclass(slots=True)
@@ -39,7 +36,7 @@ def is_braked(speed: float, held: float) -> bool:
 
     ``speed`` is the ball's [m/s], ``held`` an acceleration [m/s^2].
     """
-    return speed * speed <= 2.0 * held * _LONGEST_WAY
+    return speed * speed <= 2.0 * held * CARRY_DISTANCE
 
 
 @skill
