@@ -51,7 +51,7 @@ def sim_world(scenario: Scenario) -> World:
 
 
 def _watch_of(settings: SimSettings, own: Mapping[RobotId, RobotLimits]) -> DelayWatch:
-    """Return what measures delays, which reckons with the settings' until it has."""
+    """Return what measures the robots' delays; until it has, it expects those of the settings."""
     realism = settings.realism
     shown = realism.vision_delay if realism.processing_time is None else realism.processing_time
     return DelayWatch(settings.limits, own, realism.vision_delay - shown + realism.command_delay)

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from robobt.world.game import Team
 
 _ROBOTS_BESIDE = 6
-"""Robots in one table, so that it fits a screen of 80 columns."""
+"""Number of robots beside each other in a table, which then fits a screen of 80 columns."""
 
 
 def identify(

@@ -73,8 +73,9 @@ def match(
     teams: with a referee, for blue and yellow the figures of 'robobt record statistics', each with n, mean
     and variance;
     real_time_factor: simulated time over wall time, in each process; trace: a hash that
-    is equal for equal runs; recording: the file written, or null; delays: where they are measured, each
-    robot's delay from a command to its seen effect (seconds, low, high; null if not seen enough).
+    is equal for equal runs; recording: the file written, or null; delays: where they are measured and one
+    process plays, each robot's delay in the last trial, from a command to its seen effect (seconds, low,
+    high; null if not seen enough).
 
     Exit code 3 when a robot's tree failed in some tick, though all trials were played.
     """

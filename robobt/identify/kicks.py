@@ -28,6 +28,7 @@ _UNLIMITED_KICK = 6.35
 touch [m/s]."""
 
 _LEAST_KICKS, _LEAST_TOUCHES = 3, 4
+"""Numbers of kicks and of first touches below which their shares are not seen enough."""
 
 _MOST_SHARE_ERROR, _MOST_TOUCH_ERROR = 0.1, 0.1
 """Half widths of intervals beyond which the share of a command and those of a touch are not seen enough."""

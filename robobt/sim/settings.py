@@ -198,8 +198,8 @@ PRESETS: dict[str, SimSettings] = {
             robot_restitution=0.36,
             robot_friction=0.05,
         ),
-        # A command moves a robot at the next of the simulator's ticks but one, 5 ms apart. That its pictures
-        # are 35 ms old is left to who looks at them: they are free of noise, so that a filter undoes it.
+        # A command moves a robot in the simulator's second tick after it; ticks are 5 ms apart. The pictures
+        # are 35 ms old, which is no part of this delay: a world of the league has it as its latency.
         realism=RealismSettings(command_delay=0.005),
     ),
     "sumatra": SimSettings(

@@ -142,7 +142,7 @@ class World(Protocol):
     def delays(self) -> Mapping[RobotId, MeasuredDelay | None]:
         """Return each commanded robot's whole delay, from a command to its seen effect.
 
-        It is empty where none is measured, and None for a robot of which too little was seen.
+        It is empty where none is measured. The delay of a robot that was not seen enough is None.
         """
         return {}
 

@@ -55,7 +55,9 @@ def print_trips(server: SimServer) -> None:
     delays, robots = server.delays(), server.field.trips.robots
     if not robots:
         return
-    shown = table("robot", "delay", "round trips", "mean", "variance", "maximum", "lost", "commands", "lost")
+    shown = table(
+        "robot", "delay", "round trips", "mean", "variance", "maximum", "unanswered", "commands", "lost"
+    )
     for robot, it in sorted(robots.items()):
         shown.add_row(
             str(robot),

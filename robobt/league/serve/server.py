@@ -212,7 +212,7 @@ class SimServer(Closing):
     def delays(self) -> dict[RobotId, MeasuredDelay | None]:
         """Return each commanded robot's delay, from a command's coming until a picture shows its effect.
 
-        It is None for a robot of which too little was seen.
+        It is None for a robot that was not seen enough.
         """
         return self.field.trips.delays(self._cameras.realism.vision_delay)
 

@@ -101,7 +101,10 @@ class ShootTask(ArenaTask):
         self._velocity[which] = np.column_stack((robots["vx"][:, 0], robots["vy"][:, 0]))
 
     def _carried(self) -> FloatArray:
-        """Return the commands, gentler if the settings say so, as :class:`robobt.skills.Shoot` gives them."""
+        """Return the commands, gentler if the settings say so.
+
+        They are then as gentle as those of :class:`robobt.skills.Shoot` with a model that has a memory.
+        """
         commands = super()._carried()
         if not self.settings.gentle:
             return commands
