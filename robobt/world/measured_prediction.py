@@ -69,7 +69,7 @@ class MeasuredWorld(PredictedWorld):
     def _look(self) -> Frame:
         """Look, and compare where robots are seen with what they were commanded."""
         seen, pictures = self.world.observe(), self.world.detections()
-        if not pictures:
+        if not pictures and not self._captured:
             for robot, state in seen.robots().items():
                 self._watch.see(robot, seen.time, state.x, state.y, state.heading)
         for picture in pictures:

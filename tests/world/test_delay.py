@@ -15,12 +15,13 @@ from robobt.sim import SimWorld, preset
 from robobt.sim.realism import RealismSettings
 from robobt.world.command import RobotCommand
 from robobt.world.delay import DelayWatch
+from robobt.world.detections import Detections
 from robobt.world.field import DIVISION_B
 from robobt.world.game import Team
 from robobt.world.geometry import FloatArray
 from robobt.world.limits import RobotLimits
 from robobt.world.measured_prediction import MeasuredWorld
-from robobt.world.protocol import Placement
+from robobt.world.protocol import Placement, WrappedWorld
 from robobt.world.state import Frame, RobotId
 
 PERIOD = 1 / 60
@@ -137,6 +138,27 @@ def test_without_noise_and_cameras_a_delay_is_measured_by_the_frames() -> None:
 def test_the_age_of_the_vision_counts_whatever_its_timestamps_admit_to() -> None:
     seen = REALISTIC.model_copy(update={"vision_delay": 0.035, "processing_time": 0.01})
     made = field(constant([0.05] * 6), 0.0, 0.0, realism=seen)
+    play(made, 6.0)
+    for measured in made.delays().values():
+        assert measured is not None
+        assert measured.seconds == pytest.approx(0.085, abs=0.005)
+
+
+class SlowCameras(WrappedWorld):
+    """A world whose cameras show something in every second tick only."""
+
+    ticks = 0
+
+    def detections(self) -> Sequence[Detections]:
+        self.ticks += 1
+        return self.world.detections() if self.ticks % 2 else ()
+
+
+@pytest.mark.integration
+def test_cameras_that_are_slower_than_the_trees_are_still_what_a_delay_is_measured_by() -> None:
+    seen = REALISTIC.model_copy(update={"vision_delay": 0.035, "processing_time": 0.035})
+    made = field(constant([0.05] * 6), 0.0, 0.0, realism=seen)
+    made.world = SlowCameras(made.world)
     play(made, 6.0)
     for measured in made.delays().values():
         assert measured is not None
