@@ -14,6 +14,8 @@ import pytest
 
 from robobt.skills import FaceBall, HasBall, Skill, Store
 from robobt.testing import Ticker, frame, held, robot
+from robobt.testing.plugin import pytest_assertrepr_compare
+from robobt.testing.ticking import Statuses
 from robobt.tree import Selector, Status, TreeError, Wait
 
 ROOT = Path(__file__).parents[2]
@@ -139,6 +141,10 @@ def test_a_wrong_status_is_reported_with_the_reason_of_the_skill(tmp_path: Path)
     assert "E       assert [RUNNING, FAILURE] == [RUNNING, RUNNING]" in said
     assert "E         tick 1: FAILURE (Carry: lost the ball), not RUNNING" in said
     assert "tick 0" not in said
+
+
+def test_statuses_beside_something_else_are_left_to_pytest() -> None:
+    assert pytest_assertrepr_compare("==", Statuses(), Status.SUCCESS) is None
 
 
 @pytest.mark.integration
