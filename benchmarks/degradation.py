@@ -9,12 +9,13 @@ import typer
 from rich.markup import escape
 
 from robobt.cli.common import MAX_SEED, Json, console, errors, print_json, table
+from robobt.config.errors import short_repr, unknown_name
 from robobt.learning.agents.networks import one_thread
 from robobt.learning.envs import ShootSettings, TaskSettings, make_task
 from robobt.learning.training.evaluation import Evaluation
-from robobt.learning.training.fresh_starts import judge, trained_policy
+from robobt.learning.training.fresh_starts import JudgingError, judge, trained_policy
 from robobt.models.card import Measured
-from robobt.models.export import add_figures
+from robobt.models.export import add_figures, read_amendable
 from robobt.models.find import find_model
 
 CELLS: dict[str, dict[str, Any]] = {
@@ -69,10 +70,16 @@ def degradation(
         starts: of each cell.
         seed: of starts and noise.
         cells: names of :data:`CELLS`; all if empty.
+
+    Raises:
+        JudgingError: a policy cannot be judged, or was trained for another task than the first.
     """
     found: dict[str, dict[str, Evaluation]] = {}
     policies = {source: trained_policy(source) for source in sources}
     first = policies[sources[0]][0]
+    for source, (environment, _) in policies.items():
+        if type(environment) is not type(first):
+            raise JudgingError(f"{source}: was trained for another task than {sources[0]}")
     for name, changes in CELLS.items():
         if cells and name not in cells:
             continue
@@ -120,11 +127,25 @@ def command(
 
     Keys of --json: task, starts, seed; cells, by name and player: success, low, high, mean_time (seconds).
     """
+    for name in cells or ():
+        if name not in CELLS:
+            problem = f"no cell is called {short_repr(name)}; {unknown_name(name, CELLS)}"
+            raise typer.BadParameter(problem, param_hint="--only")
+    if card:
+        # Before they are measured for minutes.
+        read_amendable(find_model(runs[0]))
     with one_thread(), errors.status("playing"):
         found = degradation(runs, starts, seed, cells or ())
         task = make_task(trained_policy(runs[0])[0], 1).name
+    _show(found, task, starts, seed, as_json=as_json)
     if card:
+        # What has been measured is told even where the card cannot be written.
         write_on_card(runs[0], found)
+
+
+def _show(
+    found: Mapping[str, Mapping[str, Evaluation]], task: str, starts: int, seed: int, *, as_json: bool
+) -> None:
     if as_json:
         figures = {
             cell: {

@@ -23,6 +23,7 @@ from robobt.models.file import (
     SUFFIXES,
     Format,
     ModelError,
+    ModelFile,
     manifest_text,
     pack_archive,
     pack_onnx,
@@ -103,6 +104,21 @@ def export_model(
     return tuple(files)
 
 
+def read_amendable(path: Path) -> ModelFile:
+    """Read a model to whose card figures can be added; call this before long work as well.
+
+    Args:
+        path: the model's file.
+
+    Raises:
+        ModelError: the file cannot be read, or is no TorchScript model.
+    """
+    file = read_model_file(path)
+    if file.format != "torchscript":
+        raise ModelError(f"{path}: figures are added to TorchScript models only")
+    return file
+
+
 def add_figures(path: Path, figures: Mapping[str, Measured]) -> None:
     """Add figures to those on the card of a TorchScript model, and enter the file again in the manifest.
 
@@ -113,9 +129,7 @@ def add_figures(path: Path, figures: Mapping[str, Measured]) -> None:
     Raises:
         ModelError: it is no TorchScript model, or the card grows too long.
     """
-    file = read_model_file(path)
-    if file.format != "torchscript":
-        raise ModelError(f"{path}: figures are added to TorchScript models only")
+    file = read_amendable(path)
     card = file.card.model_copy(update={"held_out": {**file.card.held_out, **figures}})
     text = card.to_json()
     if len(text) > MAX_CARD_SIZE:
