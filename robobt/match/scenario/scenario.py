@@ -105,6 +105,13 @@ class Scenario(ScenarioPart):
             raise ValueError(f"no field is called {short_repr(value)}; {unknown_name(value, FIELDS)}")
         return FIELDS[value]
 
+    @field_validator("predict", mode="before")
+    @classmethod
+    def _predicted(cls, value: object) -> object:
+        if not isinstance(value, bool) and value != "measured":
+            raise ValueError(f"takes true, false or measured, not {short_repr(value)}")
+        return value
+
     @field_validator("simulator", mode="before")
     @classmethod
     def _simulator_by_name(cls, value: object) -> object:

@@ -132,6 +132,12 @@ class TestFields:
         assert settings is not None
         assert settings.max_dribble is None
 
+    def test_prediction_is_on_off_or_measured(self):
+        assert scenario(predict="measured").predict == "measured"
+        assert scenario(predict=False).predict is False
+        for wrong in ("Measured", 1, None, ["measured"], {"measured": True}):
+            assert "predict: takes true, false or measured, not " in problem(predict=wrong)
+
     def test_limits_change_only_what_they_name(self):
         loaded = scenario(robots={"blue": [robot(limits={"max_speed": 1.0})]})
         limits = loaded.robots.blue[0].limits_over(RobotLimits(max_speed=4.0, acceleration=2.0))
