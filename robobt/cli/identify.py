@@ -47,7 +47,7 @@ def identify(
     from robobt.identify.report import as_json as figures_of
     from robobt.identify.report import identify as identified_from
     from robobt.identify.report import parts_of
-    from robobt.identify.sources import load_observations
+    from robobt.identify.sources import NothingToIdentifyError, load_observations
     from robobt.sim.settings import PRESETS
 
     if base not in PRESETS:
@@ -57,8 +57,11 @@ def identify(
         check_ending("--out", out, ".yaml", ".yml")
         make_folders({"--out": out})
     seen = load_observations(file)
-    with Progress("identify", parts_of(seen)) as progress:
-        found = identified_from(seen, progress.advance)
+    try:
+        with Progress("identify", parts_of(seen)) as progress:
+            found = identified_from(seen, progress.advance)
+    except ValueError as error:
+        raise NothingToIdentifyError(f"{file}: {error}") from error
     if out is not None:
         write_preset(found, out, base)
     if as_json:

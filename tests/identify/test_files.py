@@ -64,6 +64,14 @@ def test_a_recording_without_detections_is_refused(recording: Path) -> None:
         observations_of(old)
 
 
+def test_a_recording_with_few_pictures_is_refused_by_its_name(tmp_path: Path) -> None:
+    file = played(load_scenario("three_v_three").lasting(0.5), tmp_path / "short.robobt.arrows")
+    result = CliRunner().invoke(app, ["record", "identify", str(file)])
+    assert result.exit_code == 1
+    told = " ".join(result.stderr.split())
+    assert re.search(rf"{file.name}: holds \d+ pictures, too few to identify anything$", told), told
+
+
 def test_a_log_shows_robots_and_ball_but_no_commands(tmp_path: Path) -> None:
     robot = RobotId(Team.YELLOW, 3)
     with LogWriter(tmp_path / "field.log") as log:
