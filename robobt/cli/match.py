@@ -73,9 +73,9 @@ def match(
     teams: with a referee, for blue and yellow the figures of 'robobt record statistics', each with n, mean
     and variance;
     real_time_factor: simulated time over wall time, in each process; trace: a hash that
-    is equal for equal runs; recording: the file written, or null; delays: where they are measured and one
-    process plays, each robot's delay in the last trial, from a command to its seen effect (seconds, low,
-    high; null if not seen enough).
+    is equal for equal runs; recording: the file written, or null; delays: where they are measured, each
+    robot's delay at the end of the last trial, from a command to its seen effect (seconds, low, high; null if
+    not seen enough), or null with several --workers, which do not report it.
 
     Exit code 3 when a robot's tree failed in some tick, though all trials were played.
     """
@@ -183,7 +183,7 @@ def _play_trials(
             "requested": count,
             "interrupted": played.interrupted,
             "recording": None if written is None else str(written),
-            "delays": delay_figures(delays),
+            "delays": delay_figures(delays) if processes == 1 else None,
         }
         print_json({**summary.to_json(), **extra})
     else:
