@@ -139,7 +139,7 @@ def command(
         task = make_task(trained_policy(runs[0])[0], 1).name
     _show(found, task, starts, seed, as_json=as_json)
     if card:
-        # What has been measured is told even where the card cannot be written.
+        # Last, so that a card that cannot be written loses no figures.
         write_on_card(runs[0], found)
 
 
