@@ -118,15 +118,15 @@ class GeometricShot(Settings):
         decided = turn_with_ball(me, heading, dribbling_limits(max_turn=self.max_turn), frame.period)
         sideways = sideways_after_kick(me, ball)
         if abs(wrap_angle(heading - me.heading - atan2(sideways, self.kick_speed))) <= tolerance:
-            ahead = cos(me.heading) * ball.vx + sin(me.heading) * ball.vy
-            added = max(0.0, me.limits.carried * max(ahead, 0.0))
-            decided.kick_speed = max(LEAST_KICK, self.kick_speed - added)
+            decided.kick_speed = _kick_at(self.kick_speed, me, ball)
             decided.kick_trigger = KickTrigger.NOW
         return decided
 
 
 class LearnedShot:
     """A shot by a trained policy, which turns and brakes only as hard as the dribbler can hold the ball.
+
+    Its kick is softer by what a kick adds to a ball that moves ahead, which training knows nothing of.
 
     Args:
         model: name or file of a model for Shoot.
@@ -144,6 +144,8 @@ class LearnedShot:
     def __call__(self, store: Store) -> RobotCommand:
         """Compute the command of one tick."""
         decided, me = self._control.decide(store.frame, store.me, store.draw), store.me
+        if decided.kick_speed > 0.0:
+            decided.kick_speed = _kick_at(decided.kick_speed, me, store.frame.ball)
         held, vx, vy = me.limits.hold_acceleration, me.vx, me.vy
         if self._control.remembers:
             # Turning and braking pull at the ball at right angles.
@@ -170,6 +172,13 @@ class DdpgShot(LearnedShot):
 
     def __init__(self) -> None:
         super().__init__("shoot_ddpg")
+
+
+def _kick_at(speed: float, me: RobotState, ball: BallState) -> float:
+    """Return the kick that sends a ball off at a speed [m/s], which is less where the ball moves ahead."""
+    ahead = cos(me.heading) * ball.vx + sin(me.heading) * ball.vy
+    added = max(0.0, me.limits.carried * max(ahead, 0.0))
+    return max(min(LEAST_KICK, speed), speed - added)
 
 
 def _aim(store: Store) -> tuple[Point, float]:
