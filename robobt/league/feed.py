@@ -88,7 +88,7 @@ class Feed:
         self._expected = field if connection.geometry == "scenario" else None
         measured = connection.delay == "measured"
         self.filter = VisionFilter(self.known.field or field or DIVISION_B, settings, limits, measured)
-        if self.known.delays is None:
+        if self.known.delays is None or not self.known.delays.expects_as(self.filter.delays):
             self.known.delays = self.filter.delays
         self.filter.delays = self.known.delays
         self.filter.delays.interrupt()

@@ -169,6 +169,14 @@ class DelayWatch:
             for robot, it in delays.items()
         }
 
+    def expects_as(self, other: DelayWatch) -> bool:
+        """Return whether another watch was made for the same robots, so that both may share what they measured.
+
+        Args:
+            other: the other watch.
+        """
+        return (self._limits, self._own, self._nominal) == (other._limits, other._own, other._nominal)
+
     def interrupt(self) -> None:
         """Forget where robots are, as after they were placed or the clock jumped; keep their delays."""
         for watch in self._robots.values():

@@ -223,3 +223,10 @@ def test_what_was_measured_stays_known_when_robots_are_placed() -> None:
     assert None not in before.values()
     made.reset(Placement({robot: (-3.0 + i, -2.0, 0.0) for i, robot in enumerate(ROBOTS)}), 2)
     assert made.delays() == before
+
+
+def test_a_watch_expects_as_another_that_was_made_for_the_same_robots() -> None:
+    watch = DelayWatch(RobotLimits(), {ROBOTS[0]: RobotLimits(lag=0.04)}, nominal=0.05)
+    assert watch.expects_as(DelayWatch(RobotLimits(), {ROBOTS[0]: RobotLimits(lag=0.04)}, nominal=0.05))
+    assert not watch.expects_as(DelayWatch(RobotLimits(), nominal=0.05))
+    assert not watch.expects_as(DelayWatch(RobotLimits(dead_time=0.01), nominal=0.05))
