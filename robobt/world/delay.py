@@ -170,7 +170,7 @@ class DelayWatch:
         }
 
     def expects_as(self, other: DelayWatch) -> bool:
-        """Return whether another watch was made for the same robots, so that both may share what they measured.
+        """Return whether another watch was made for the same robots, so that both may share their figures.
 
         Args:
             other: the other watch.
