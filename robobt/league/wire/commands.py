@@ -82,9 +82,10 @@ class Request:
 
 
 def clamp_command(command: RobotCommand, limits: RobotLimits, kicker: KickerSettings) -> RobotCommand:
-    """Return the command within the robot's limits and its kicker's."""
+    """Return the command within the robot's limits, as far as its gains reach them, and its kicker's."""
     vx, vy = limit_norm(command.vx, command.vy, limits.max_speed / min(limits.gain, limits.side_gain, 1.0))
-    omega = min(max(command.omega, -limits.max_turn), limits.max_turn)
+    most = limits.max_turn / min(limits.turn_gain, 1.0)
+    omega = min(max(command.omega, -most), most)
     fastest = kicker.max_chip_speed if command.kick_angle > 0.0 else kicker.max_speed
     kick = min(max(command.kick_speed, 0.0), fastest)
     return RobotCommand(vx, vy, omega, kick, command.kick_trigger, command.dribbler, command.kick_angle)
