@@ -19,6 +19,9 @@ MAX_ACCELERATION = 1.5
 TURN_ACCELERATION = 15.0
 """Change of the turning rate at which the default dribbler holds the ball [rad/s^2]."""
 
+_ROLLS_AT = 0.1
+"""A ball that comes no faster than this moves ahead with a robot that drives into it [m/s]."""
+
 
 @lru_cache(maxsize=64)
 def dribbling_limits(
@@ -33,8 +36,8 @@ def dribbling_limits(
         max_speed: top speed, the same in every direction [m/s].
         max_turn: turning rate [rad/s].
         max_acceleration: acceleration [m/s^2].
-        held: acceleration at which the dribbler keeps the ball. It limits changes of the turning rate, and
-            all acceleration but speeding up along the heading, which pushes the ball [m/s^2].
+        held: acceleration at which the dribbler keeps the ball. It limits all acceleration but speeding up
+            along the heading, which pushes the ball [m/s^2].
     """
     holding = min(max_acceleration, held)
     return RobotLimits(
@@ -102,6 +105,22 @@ def velocity_for_kick(me: RobotState, vx: float, vy: float) -> Point:
     kept, turning = me.limits.touch_kept, me.omega * MOUTH
     front_x, front_y = me.vx - turning * sin(me.heading), me.vy + turning * cos(me.heading)
     return kept * vx + (1.0 - kept) * front_x, kept * vy + (1.0 - kept) * front_y
+
+
+def carried_into_kick(me: RobotState, ball: BallState) -> float:
+    """Return what a kick adds to a ball that moves ahead with the robot, or that the robot drives into [m/s].
+
+    Args:
+        me: the robot.
+        ball: the ball before its mouth.
+    """
+    if me.limits.carried <= 0.0:
+        return 0.0
+    c, s = cos(me.heading), sin(me.heading)
+    ahead = c * ball.vx + s * ball.vy
+    if ahead <= -_ROLLS_AT:
+        return 0.0
+    return me.limits.carried * max(ahead, c * me.vx + s * me.vy, 0.0)
 
 
 def sideways_after_kick(me: RobotState, ball: BallState) -> float:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 from math import atan2, cos, radians, sin
 
-from robobt.motion.dribbling import dribbling_limits, sideways_after_kick, turn_with_ball
+from robobt.motion.dribbling import carried_into_kick, dribbling_limits, sideways_after_kick, turn_with_ball
 from robobt.motion.path_planner import TARGETS, allowed_target, next_waypoint, travel
 from robobt.motion.pilot import roughly
 from robobt.motion.run_up import RUN_UP_SPEED, run_up
@@ -51,8 +51,6 @@ _TAKEN_BALL_ANGLE = radians(75.0)
 _WALL_TOLERANCE = 0.03
 _KICKED_SPEED_SHARE = 0.6
 """A ball with this share of the kick's speed towards the target has been kicked."""
-_ROLLS_AT = 0.1
-"""A ball that comes no faster than this moves ahead with a robot that drives into it [m/s]."""
 LEAST_KICK = 0.1
 """Slowest kick [m/s]."""
 _CARRY_SPEED = 2.0
@@ -260,9 +258,7 @@ class KickToTarget(DrivingSkill):
         if off > order.tolerance and not touched:
             return False
         # A ball that rolls towards the robot, or moves ahead with it, may leave faster than the kick alone.
-        added = me.limits.touch_returned * max(-ahead, 0.0)
-        if me.limits.carried > 0.0 and ahead > -_ROLLS_AT:
-            added += me.limits.carried * max(ahead, c * me.vx + s * me.vy, 0.0)
+        added = me.limits.touch_returned * max(-ahead, 0.0) + carried_into_kick(me, ball)
         self.store.command.kick_speed = max(LEAST_KICK, order.speed - added)
         self.store.command.kick_angle = order.angle
         self.store.command.kick_trigger = KickTrigger.ON_CONTACT

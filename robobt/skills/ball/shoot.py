@@ -10,7 +10,7 @@ from typing import Annotated, TypeAlias
 from pydantic import Field
 
 from robobt.config.validation import Settings
-from robobt.motion.dribbling import dribbling_limits, sideways_after_kick, turn_with_ball
+from robobt.motion.dribbling import carried_into_kick, dribbling_limits, sideways_after_kick, turn_with_ball
 from robobt.motion.path_planner import TARGETS
 from robobt.skills.ball.kick_to_target import LEAST_KICK
 from robobt.skills.ball.learned_control import LearnedControl, PolicyError, find_policy, policies_by_name
@@ -176,9 +176,7 @@ class DdpgShot(LearnedShot):
 
 def _kick_at(speed: float, me: RobotState, ball: BallState) -> float:
     """Return the kick that sends a ball off at a speed [m/s], which is less where the ball moves ahead."""
-    ahead = cos(me.heading) * ball.vx + sin(me.heading) * ball.vy
-    added = max(0.0, me.limits.carried * max(ahead, 0.0))
-    return max(min(LEAST_KICK, speed), speed - added)
+    return max(min(LEAST_KICK, speed), speed - carried_into_kick(me, ball))
 
 
 def _aim(store: Store) -> tuple[Point, float]:
