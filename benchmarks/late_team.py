@@ -19,6 +19,7 @@ from robobt.match.runner import trial_seed
 from robobt.match.scenario.scenario import Scenario, load_scenario
 from robobt.sim import SimWorld
 from robobt.statistics import mean_interval
+from robobt.world.command import RobotCommand
 from robobt.world.delay import DelayWatch
 from robobt.world.game import Team
 from robobt.world.geometry import wrap_angle
@@ -76,6 +77,9 @@ class _Known(PredictedWorld):
 
     def _moved(self, robot: RobotId, seen: RobotState) -> RobotState:
         return super()._moved(robot, seen) if robot.team is Team.BLUE else _coasting(seen, self._extra)
+
+    def _orders(self, robot: RobotId, limits: RobotLimits) -> list[tuple[float, RobotCommand]]:
+        return super()._orders(robot, limits) if robot.team is Team.BLUE else []
 
     def _delay(self, robot: RobotId, limits: RobotLimits) -> float:  # noqa: ARG002
         return self._extra

@@ -10,13 +10,12 @@ from statistics import fmean
 from typing import NamedTuple
 
 from robobt.world.answer import FollowedCommand
-from robobt.world.ball_model import GRAVITY
 from robobt.world.command import RobotCommand
 from robobt.world.geometry import wrap_angle
 from robobt.world.limits import RobotLimits
+from robobt.world.predicted_ball import PLACE, STAND_STILL, RobotWay, met_ball
 from robobt.world.protocol import Placement, World, WrappedWorld
 from robobt.world.state import (
-    BALL_RADIUS,
     ROBOT_HEIGHT,
     BallState,
     Frame,
@@ -33,8 +32,11 @@ _LONGEST_COMMANDED_GAP = 0.1
 _CARRIED_DISTANCE = 0.03
 """A ball seen within this distance of its place in the mouth is in the mouth [m]."""
 
-_DEFAULT_FRONT = 0.08
-"""Default distance from the centre to the flat front [m]."""
+_ASIDE = 0.04
+"""Distance from the middle of the mouth within which it holds a ball [m]."""
+
+_MET_WITHIN = 1.5
+"""A robot farther from the ball than this does not meet it before the next command takes effect [m]."""
 
 _FADES = 0.04
 """Time after which the observed motion of a ball held by several robots counts for a third [s]."""
@@ -80,8 +82,9 @@ class PredictedWorld(WrappedWorld):
 
     Every robot is moved on from where it was seen, by the commands in force since then and within its limits,
     to the moment at which the next command moves it: after the command's delay and its own dead time.
-    A ball in the mouth, which the robot's sensor reports without delay, moves with its robot; any other ball
-    rolls on as observed.
+    A ball in the mouth, which the robot's sensor reports without delay, moves with its robot until a kick on
+    its way to the robot sends it off; any other ball rolls on as observed, until a robot takes it, kicks it
+    on or lets it bounce off. The robots' ``ball_contact`` is predicted with it.
 
     Args:
         world: the world that is seen late.
@@ -113,10 +116,18 @@ class PredictedWorld(WrappedWorld):
         """Return what the world reports, predicted to the moment at which the next command takes effect."""
         seen = self._look()
         self._now = seen.time
-        own = tuple([self._moved(RobotId(seen.team, robot.id), robot) for robot in seen.own])
-        theirs = tuple([self._moved(RobotId(seen.team.other, robot.id), robot) for robot in seen.opponents])
-        ball = self._ball(seen, own + theirs)
-        return replace(seen, ball=ball, own=own, opponents=theirs)
+        before = seen.robots()
+        after = {robot: self._moved(robot, state) for robot, state in before.items()}
+        ball, touched = self._ball(seen, before, after)
+        states = tuple(after.values())
+        count = len(seen.own)
+        return replace(
+            seen,
+            ball=ball,
+            own=states[:count],
+            opponents=states[count:],
+            last_touch=touched or seen.last_touch,
+        )
 
     @property
     def shows_truth(self) -> bool:
@@ -146,7 +157,7 @@ class PredictedWorld(WrappedWorld):
             since = min(0.0, until)
         state, followed = replace(seen), FollowedCommand()
         for i, (time, commands) in enumerate(self._sent):
-            command = commands.get(robot, _STAND_STILL)
+            command = commands.get(robot, STAND_STILL)
             begin, end = time + delay, until
             if i + 1 < len(self._sent):
                 end = self._sent[i + 1].time + delay
@@ -166,26 +177,52 @@ class PredictedWorld(WrappedWorld):
         dead = fmean(robot.limits.dead_time for robot in robots) if robots else 0.0
         return self.vision_delay + self.command_delay + dead
 
-    def _ball(self, seen: Frame, now: tuple[RobotState, ...]) -> BallState:
-        ball, age = seen.ball, self._ball_age(now)
-        both = zip(seen.own + seen.opponents, now, strict=True)
-        holding = [(before, after) for before, after in both if after.ball_contact]
-        if holding:
-            return _held(ball, holding, age)
-        rolled = BallState(ball.x + ball.vx * age, ball.y + ball.vy * age, ball.vx, ball.vy)
-        if ball.z > 0.0 or ball.vz > 0.0:
-            rolled.z = max(ball.z + (ball.vz - 0.5 * GRAVITY * age) * age, 0.0)
-            rolled.vz = ball.vz - GRAVITY * age if rolled.z > 0.0 else 0.0
-        for robot in now:
-            dx, dy = rolled.x - robot.x, rolled.y - robot.y
-            gap, least = hypot(dx, dy), _DEFAULT_FRONT + BALL_RADIUS
+    def _orders(self, robot: RobotId, limits: RobotLimits) -> list[tuple[float, RobotCommand]]:
+        """Return a robot's commands, each with the time from which it is in force [s]."""
+        delay = self._delay(robot, limits)
+        return [(it.time + delay, it.commands.get(robot, STAND_STILL)) for it in self._sent]
+
+    def _ball(
+        self, frame: Frame, before: Mapping[RobotId, RobotState], after: Mapping[RobotId, RobotState]
+    ) -> tuple[BallState, RobotId | None]:
+        """Return the predicted ball and who touches it last; tell predicted robots whether they have it."""
+        ball, model = frame.ball, frame.ball_model
+        age = self._ball_age(tuple(after.values()))
+        seen, until = self._now - self.vision_delay, self._now - self.vision_delay + age
+        holders = [robot for robot, state in after.items() if state.ball_contact]
+        ways = {
+            robot: RobotWay(
+                robot,
+                state,
+                after[robot],
+                seen,
+                self._now + self._delay(robot, state.limits),
+                self._orders(robot, state.limits),
+            )
+            for robot, state in before.items()
+            if robot in holders or hypot(state.x - ball.x, state.y - ball.y) < _MET_WITHIN
+        }
+        if holders:
+            now = _held(ball, [(before[robot], after[robot]) for robot in holders], age)
+            if len(holders) > 1:
+                # Where a robot sends a ball that another has too, nobody knows.
+                return now, None
+            met = met_ball(now, tuple(ways.values()), self._now, self._now, until, model, ways[holders[0]])
+            after[holders[0]].ball_contact = met.kept
+            return (now if met.kept else met.ball), None
+        met = met_ball(ball, tuple(ways.values()), seen, self._now, until, model)
+        touched = None if met.touched is None else met.touched.robot
+        later = met.ball
+        if touched is not None and met.kept:
+            after[touched].ball_contact = True
+            return later, touched
+        for robot in after.values():
+            dx, dy = later.x - robot.x, later.y - robot.y
+            gap = hypot(dx, dy)
             # No ball lies inside a robot.
-            if 0.0 < gap < least and rolled.z < ROBOT_HEIGHT:
-                rolled.x, rolled.y = robot.x + dx / gap * least, robot.y + dy / gap * least
-        return rolled
-
-
-_STAND_STILL = RobotCommand()
+            if 0.0 < gap < PLACE and later.z < ROBOT_HEIGHT:
+                later.x, later.y = robot.x + dx / gap * PLACE, robot.y + dy / gap * PLACE
+        return later, touched
 
 
 def _held(ball: BallState, holding: list[tuple[RobotState, RobotState]], age: float) -> BallState:
@@ -199,10 +236,9 @@ def _held(ball: BallState, holding: list[tuple[RobotState, RobotState]], age: fl
         c, s = cos(before.heading), sin(before.heading)
         dx, dy = ball.x - before.x, ball.y - before.y
         ahead, aside = c * dx + s * dy, c * dy - s * dx
-        place = _DEFAULT_FRONT + BALL_RADIUS
-        if abs(ahead - place) > _CARRIED_DISTANCE or abs(aside) > _DEFAULT_FRONT / 2:
+        if abs(ahead - PLACE) > _CARRIED_DISTANCE or abs(aside) > _ASIDE:
             # The ball was not in the mouth yet when it was seen.
-            ahead, aside, fresh = place, 0.0, 0.0
+            ahead, aside, fresh = PLACE, 0.0, 0.0
         c, s = cos(after.heading), sin(after.heading)
         dx, dy = c * ahead - s * aside, s * ahead + c * aside
         x, y = x + after.x + dx, y + after.y + dy

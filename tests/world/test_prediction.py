@@ -223,3 +223,57 @@ def test_robots_are_shown_where_their_next_command_finds_them(
             assert off(shown[then], made.truth()) < 0.012
         going = RobotCommand(1.5, 0.6, 2.0) if tick < 40 else RobotCommand(-0.5, -0.8, -1.0)
         made.act({BLUE: going, YELLOW: going})
+
+
+def late_field(**limits: float) -> PredictedWorld:
+    """A field whose robots obey 0.1 s late; the ball's model is simple enough to be predicted."""
+    settings = preset("rsim")
+    late = settings.limits.model_copy(update={"dead_time": 0.1, "catch_speed": 5.0, **limits})
+    return PredictedWorld(SimWorld(DIVISION_B, {BLUE: late, YELLOW: late}, settings, 0.01), 0.0)
+
+
+def follow(made: PredictedWorld, ticks: int, kick_at: int) -> list[tuple[Frame, Frame]]:
+    """What was shown of every moment 0.1 s before, and what was."""
+    shown: list[Frame] = []
+    pairs = []
+    for tick in range(ticks):
+        shown.append(made.observe())
+        if tick >= 10:
+            pairs.append((shown[tick - 10], made.truth()))
+        kick = 4.0 if kick_at <= tick < kick_at + 10 else 0.0
+        made.act({BLUE: RobotCommand(kick_speed=kick, dribbler=True), YELLOW: RobotCommand()})
+    return pairs
+
+
+def test_a_carried_ball_leaves_with_the_kick_that_is_on_its_way() -> None:
+    made = late_field()
+    gap = preset("rsim").body.face + BALL_RADIUS
+    ball = (-1.0 + gap * math.cos(0.6), gap * math.sin(0.6))
+    made.reset(Placement({BLUE: (-1.0, 0.0, 0.6), YELLOW: (3.0, 2.0, 0.0)}, (*ball, 0.0, 0.0)), 1)
+    pairs = follow(made, 45, kick_at=10)
+    assert pairs[-1][1].ball.speed > 2.5
+    for shown, real in pairs:
+        assert math.hypot(shown.ball.x - real.ball.x, shown.ball.y - real.ball.y) < 0.15
+    told = [shown.own[0].ball_contact for shown, _ in pairs]
+    was = [real.own[0].ball_contact for _, real in pairs]
+    assert abs(told.index(False) - was.index(False)) <= 4
+
+
+@pytest.mark.parametrize("kick_at", [15, 99])
+def test_a_rolling_ball_is_met_by_the_robot_in_its_way(kick_at: int) -> None:
+    made = late_field()
+    made.reset(Placement({BLUE: (-1.0, 0.0, 0.0), YELLOW: (3.0, 2.0, 0.0)}, (0.0, 0.0, -3.0, 0.0)), 1)
+    pairs = follow(made, 45, kick_at)
+    for shown, real in pairs[:-3]:
+        assert shown.ball.x > -0.95
+        assert math.hypot(shown.ball.x - real.ball.x, shown.ball.y - real.ball.y) < 0.17
+    assert (pairs[-1][0].ball.vx > 2.0) is (kick_at < 99)
+
+
+def test_a_ball_too_fast_to_be_taken_bounces_off() -> None:
+    made = late_field(catch_speed=0.5)
+    made.reset(Placement({BLUE: (-1.0, 0.0, math.pi), YELLOW: (3.0, 2.0, 0.0)}, (0.0, 0.0, -3.0, 0.0)), 1)
+    pairs = follow(made, 45, kick_at=99)
+    for shown, _ in pairs:
+        assert shown.ball.x > -1.0
+    assert 0.2 < pairs[-1][0].ball.vx < 2.0
