@@ -89,10 +89,10 @@ def _measured(task: tuple[int, str], _: object) -> tuple[_Miss, _Miss]:
     seed, preset = task
     scenario = load_scenario("six_v_six").lasting(_JUMPS_AT + _FOLLOWED_AFTER + 1.0)
     settings = scenario_settings(scenario, preset)
-    late = settings.command_to_effect
+    late = settings.realism.command_delay
     settings = settings.model_copy(update={"realism": _NOISE.model_copy(update={"command_delay": late})})
     setups = sorted(scenario.robots, key=lambda pair: pair[0])
-    link = _Link({robot: late + it.limits_over(settings.limits).dead_time for robot, it in setups}, seed)
+    link = _Link({robot: it.limits_over(settings.limits).obeys_after(late) for robot, it in setups}, seed)
     moments = [round(time / scenario.period) for time in (_KNOWN_AFTER, _JUMPS_AT + _FOLLOWED_AFTER)]
     misses = []
     with MatchLoop(scenario, seed, partial(_world, link=link, settings=settings)) as match:

@@ -300,9 +300,8 @@ class LeagueWorld(World, Closing):
             commands = {robot: RobotCommand() for robot in commands}
         commands = self._feed.picture.checked(commands, now)
         self._link.send(commands, now)
-        # The age of the vision is not in it, and dead times the filter adds.
-        effect = self.settings.realism.command_delay + self.settings.limits.reaction
-        self._feed.filter.sent(self._feed.vision_now(), commands, effect)
+        # The age of the vision is not in it, and what the robots themselves delay the filter adds.
+        self._feed.filter.sent(self._feed.vision_now(), commands, self.settings.realism.command_delay)
         self.send_times.append(self._clock())
         self._sent, self._sent_at = commands, now
 

@@ -106,14 +106,13 @@ class Arenas:
         self.touch: IntArray = self._arrays.touch
         self.history: FloatArray = self._arrays.history
         self._arrays.bodies[:, :count, :2] = np.array(until_placed(count)).reshape(count, 2)
-        delay = settings.command_to_effect
         # Commands in force before a robot's switch, those after it, and those still on their way.
         self._old, self._new = (np.zeros((n, count, size(COMMAND))) for _ in range(2))
         self._waiting = np.zeros((1, n, count, size(COMMAND)))
         self._newest = 0
         self._periods: IntArray = np.zeros((n, count), dtype=np.int64)
         self._arena_index, self._robot_index = np.ogrid[:n, :count]
-        self._delays = np.array([delay + (own or settings.limits).dead_time for own in limits])
+        self._delays = np.array([settings.holds_back(own or settings.limits) for own in limits])
         self.delay_commands(np.arange(n), 0.0)
         self.seed(range(n))
         self.late = bool(self._periods.any())

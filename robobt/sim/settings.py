@@ -75,10 +75,18 @@ class SimSettings(Settings):
     realism: RealismSettings = RealismSettings()
     sub_step: float = Field(0.005, gt=0.0005, le=0.01, description="longest physics step [s]")
 
-    @property
-    def command_to_effect(self) -> float:
-        """Time from a command to its effect, without a robot's dead time [s]; wheels react late anyway."""
-        return self.realism.command_delay + (self.limits.reaction if self.wheels is None else 0.0)
+    def holds_back(self, limits: RobotLimits) -> float:
+        """Return for how long the simulator keeps a command from a robot [s].
+
+        A robot without wheels gets it when it is to obey
+        (:meth:`~robobt.world.limits.RobotLimits.obeys_after`). Wheels get it earlier by the robot's
+        ``reaction``, because they are that late by themselves.
+
+        Args:
+            limits: the robot's.
+        """
+        delay = self.realism.command_delay
+        return limits.obeys_after(delay) if self.wheels is None else limits.shown_after(delay)
 
 
 _GRSIM_BALL = BallSettings(

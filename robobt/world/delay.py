@@ -88,7 +88,7 @@ class DelayWatch:
     Args:
         limits: of robots that are not named in ``own``.
         own: limits of individual robots.
-        nominal: delay to expect until one is measured, without the robots' dead times [s].
+        nominal: delay to expect until one is measured, of all but the robots themselves [s].
     """
 
     def __init__(
@@ -144,8 +144,8 @@ class DelayWatch:
     def expected(self, robot: RobotId) -> float:
         """Return the delay by which to predict a robot [s].
 
-        It is the measured one. For a robot that was not seen enough it is the nominal delay and its dead
-        time, plus the median of what the measured robots have beyond theirs.
+        It is the measured one. For a robot that was not seen enough it is the delay that the nominal one and
+        its limits tell, plus the median of what the measured robots have beyond theirs.
 
         Args:
             robot: which.
@@ -186,7 +186,7 @@ class DelayWatch:
         return self._own.get(robot, self._limits)
 
     def _expected(self, robot: RobotId) -> float:
-        return self._nominal + self._limits_of(robot).dead_time
+        return self._limits_of(robot).obeys_after(self._nominal)
 
 
 class _RobotWatch:

@@ -50,7 +50,7 @@ class RobotLimits(Settings):
         0.0,
         ge=0,
         le=0.05,
-        description="time from a command to its effect that pilots allow for, as no prediction does [s]",
+        description="time beside the dead time that no frame is predicted over, as pilots allow for it [s]",
     )
     dead_time: float = Field(
         0.0, ge=0, le=0.3, description="time from a command's arrival to the robot's first motion [s]"
@@ -106,9 +106,30 @@ class RobotLimits(Settings):
         """Rate at which a turn is slowed down [rad/s^2]."""
         return self.turn_acceleration if self.turn_braking is None else self.turn_braking
 
+    def obeys_after(self, command_delay: float) -> float:
+        """Return how long after a command is sent the robot begins to follow it [s].
+
+        With the age of a picture it is the whole delay, from a command to its seen effect. Predictions let
+        commands take effect by it; they show the robot at :meth:`shown_after`.
+
+        Args:
+            command_delay: of network and radio, from the command's sending to its arrival [s].
+        """
+        return command_delay + self.reaction + self.dead_time
+
+    def shown_after(self, command_delay: float) -> float:
+        """Return how far beyond the present a frame shows the robot [s].
+
+        It is :meth:`obeys_after` without ``reaction``, for which pilots allow by :attr:`trailing_time`.
+
+        Args:
+            command_delay: of network and radio, from a command's sending to its arrival [s].
+        """
+        return command_delay + self.dead_time
+
     @property
     def trailing_time(self) -> float:
-        """Time by which motion trails a command beyond what predictions take out [s]."""
+        """Time by which motion trails a command beyond the moment that a frame shows [s]."""
         return self.reaction + self.longest_lag
 
     @property

@@ -36,7 +36,7 @@ class MeasuredWorld(PredictedWorld):
         self._watch = watch
         self._pictures: deque[Detections] = deque(maxlen=_MOST_PICTURES)
         self._captured: dict[int, float] = {}
-        self._delays: dict[RobotId, float] = {}
+        self._shown_after: list[float] = []
         self._age = 0.0
 
     def reset(self, placement: Placement, seed: int) -> None:
@@ -48,7 +48,7 @@ class MeasuredWorld(PredictedWorld):
 
     def observe(self) -> Frame:
         """Return what the world reports, predicted to the moment at which the next command takes effect."""
-        self._delays.clear()
+        self._shown_after.clear()
         return super().observe()
 
     def act(self, commands: Mapping[RobotId, RobotCommand]) -> None:
@@ -82,9 +82,10 @@ class MeasuredWorld(PredictedWorld):
                 self._watch.see(robot, picture.captured, x, y, heading)
         return seen
 
-    def _delay(self, robot: RobotId, limits: RobotLimits) -> float:  # noqa: ARG002
-        delay = self._delays[robot] = max(0.0, self._age + self._watch.expected(robot))
+    def _delay(self, robot: RobotId, limits: RobotLimits) -> float:
+        delay = max(0.0, self._age + self._watch.expected(robot))
+        self._shown_after.append(delay - limits.reaction)
         return delay
 
     def _ball_age(self, robots: tuple[RobotState, ...]) -> float:  # noqa: ARG002
-        return fmean(self._delays.values()) if self._delays else 0.0
+        return fmean(self._shown_after) if self._shown_after else 0.0

@@ -69,7 +69,7 @@ def predicted(
         world: the world that is seen late, or whose robots obey late.
         limits: of its robots, which have their dead times.
         vision_delay: age of what it observes [s].
-        command_delay: from a command to its effect, beside the robots' own dead time [s].
+        command_delay: from a command's sending to its arrival at the robots [s].
         gaps: as for :class:`PredictedWorld`.
     """
     if vision_delay + command_delay + max((own.dead_time for own in limits), default=0.0) == 0.0:
@@ -81,7 +81,8 @@ class PredictedWorld(WrappedWorld):
     """A world whose frames are predicted to the present from the commands sent.
 
     Every robot is moved on from where it was seen, by the commands in force since then and within its limits,
-    to the moment at which the next command moves it: after the command's delay and its own dead time.
+    to the moment at which the next command moves it, less the reaction that pilots allow for
+    (:meth:`robobt.world.limits.RobotLimits.obeys_after`, ``shown_after``).
     A ball in the mouth, which the robot's sensor reports without delay, moves with its robot until a kick on
     its way to the robot sends it off; any other ball rolls on as observed, until a robot takes it, kicks it
     on or lets it bounce off. The robots' ``ball_contact`` is predicted with it.
@@ -89,7 +90,7 @@ class PredictedWorld(WrappedWorld):
     Args:
         world: the world that is seen late.
         vision_delay: age of what it observes [s].
-        command_delay: from a command to its effect [s].
+        command_delay: from a command's sending to its arrival at the robots [s].
         gaps: whether a detection that is missing repeats the one before; then one that is
             the same to the last digit counts as missing and is predicted for longer.
     """
@@ -146,7 +147,7 @@ class PredictedWorld(WrappedWorld):
     def _moved(self, robot: RobotId, seen: RobotState) -> RobotState:
         limits = seen.limits
         delay = self._delay(robot, limits)
-        until = self._now + delay
+        until = self._now + delay - limits.reaction
         since = self._now - self.vision_delay
         if self._gaps:
             last = self._missed.get(robot)
@@ -160,17 +161,17 @@ class PredictedWorld(WrappedWorld):
             command = commands.get(robot, STAND_STILL)
             begin, end = time + delay, until
             if i + 1 < len(self._sent):
-                end = self._sent[i + 1].time + delay
-            if limits.longest_lag > 0.0 and begin < since:
+                end = min(end, self._sent[i + 1].time + delay)
+            if limits.longest_lag > 0.0 and begin < min(since, end):
                 followed.follow(command, limits, min(since, end) - begin)
             begin = max(since, begin)
             if end > begin:
-                _drive(state, followed, command, min(end, until) - begin)
+                _drive(state, followed, command, end - begin)
         return state
 
     def _delay(self, robot: RobotId, limits: RobotLimits) -> float:  # noqa: ARG002
-        """Return a robot's delay from a command to its effect [s]."""
-        return self.command_delay + limits.dead_time
+        """Return how long after a command is sent a robot follows it [s]."""
+        return limits.obeys_after(self.command_delay)
 
     def _ball_age(self, robots: tuple[RobotState, ...]) -> float:
         """Return for how long the ball is predicted: the vision's age and the robots' mean delay [s]."""

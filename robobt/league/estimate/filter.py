@@ -112,8 +112,7 @@ class VisionFilter:
         self._ball_model = self.settings.ball.model
         self._limits = dict(limits or {})
         realism = self.settings.realism
-        nominal = realism.command_delay + self.settings.limits.reaction
-        self.delays = DelayWatch(self.settings.limits, self._limits, nominal)
+        self.delays = DelayWatch(self.settings.limits, self._limits, realism.command_delay)
         robot_noise = max(realism.robot_noise, _MIN_ROBOT_NOISE)
         self._robot_noises = robot_noise, max(realism.heading_noise, _MIN_HEADING_NOISE)
         self._ball_noise = max(realism.ball_noise, _MIN_BALL_NOISE)
@@ -150,8 +149,8 @@ class VisionFilter:
         Args:
             time: when they are sent [s].
             commands: by robot.
-            link_delay: from there until they reach the robots [s]. They take effect after each robot's own
-                dead time. Where predictions reckon with measured delays, these stand in place of the two.
+            link_delay: from there until they reach the robots [s]. When they take effect each robot's limits
+                tell. Where predictions reckon with measured delays, these stand in place of both.
         """
         self.delays.sent(time, commands)
         for robot, command in commands.items():
@@ -161,7 +160,7 @@ class VisionFilter:
                 # Where a delay has become shorter, commands on their way still come in their order.
                 queue.append(Sent(max(since, queue[-1].since) if queue else since, command))
             else:
-                queue.append(Sent(time + link_delay + self._limits_of(robot).dead_time, command))
+                queue.append(Sent(time + self._limits_of(robot).obeys_after(link_delay), command))
             # The last command before the horizon has to stay: it is still in force.
             while len(queue) > 1 and queue[1].since < time - _COMMAND_MEMORY:
                 queue.pop(0)
@@ -242,9 +241,10 @@ class VisionFilter:
 
         Args:
             time: on the vision's clock [s].
-            to_effect: whether to predict on to when a command moves a robot: each commanded robot by its
-                dead time, from ``time`` as the command's arrival, or by its measured delay, from ``time`` as
-                the command's sending. All else is predicted on by the mean of these.
+            to_effect: whether to predict on to when a command moves a robot, less the reaction that pilots
+                allow for: each commanded robot by its dead time, from ``time`` as the command's arrival, or
+                by its measured delay, from ``time`` as the command's sending. All else is predicted on by the
+                mean of these.
         """
         dead = {robot: self._effect_after(robot) for robot in self._sent} if to_effect else {}
         others = fmean(dead.values()) if dead else 0.0
@@ -331,8 +331,9 @@ class VisionFilter:
             self.delays.see(robot, time, x, y, heading)
 
     def _effect_after(self, robot: RobotId) -> float:
-        """Return after what time a command that is recorded as of now moves a robot [s]."""
-        return self.delays.expected(robot) if self._measured else self._limits_of(robot).dead_time
+        """Return how far beyond a time of sending, or of arrival, a frame shows a robot [s]."""
+        limits = self._limits_of(robot)
+        return self.delays.expected(robot) - limits.reaction if self._measured else limits.shown_after(0.0)
 
     def _occupied(self, seen: RobotDetection) -> bool:
         """Return whether another robot of the team is tracked where one is seen: the number may be wrong."""

@@ -204,9 +204,8 @@ class TaskSettings(OrderedSettings):
 
     @property
     def longest_delay(self) -> float:
-        """Longest time from a command to its effect, without lag [s]."""
-        own = self.simulator.command_to_effect + self.robot_limits.dead_time
-        return own + self.randomisation.control_delay[1]
+        """Longest time for which a command is kept from the robot [s]."""
+        return self.simulator.holds_back(self.robot_limits) + self.randomisation.control_delay[1]
 
     @property
     def stepped_simulator(self) -> SimSettings:
