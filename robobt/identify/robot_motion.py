@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from math import cos, hypot, pi, sin, sqrt
+from math import pi
 
 import numpy as np
 
-from robobt.world.compiled import compilable, compiled
-from robobt.world.driving import approached
+from robobt.world.compiled import compilable, compiled, record_dtype
+from robobt.world.driving import LocalVelocity, drive, follow
 from robobt.world.geometry import FloatArray
+from robobt.world.records import ROBOT, Limits, Robot
 
 DRIVE_PARAMETERS = (
     "delay",
@@ -37,41 +38,21 @@ _LEAST_SPAN = 1e-3
 """Pictures nearer in time than this tell nothing of a speed [s]."""
 
 
-@compilable
-def _drive(state: FloatArray, vx: float, vy: float, omega: float, p: FloatArray, dt: float) -> None:
-    """Move a state on by one step under a command, within the limits.
+_SIDE = {"side_acceleration": "lateral_acceleration", "side_braking": "lateral_braking"}
+_DRIVE_LIMITS = np.dtype([(_SIDE.get(name, name), np.float64) for name in DRIVE_PARAMETERS])
+"""The same, by the names of :class:`~robobt.world.records.Limits`."""
 
-    It is x, y, heading, vx, vy, omega, and the velocity that the robot's controller follows.
-    """
-    c, s = cos(state[2]), sin(state[2])
-    state[6] = approached(state[6], vx, p[11], dt)
-    state[7] = approached(state[7], vy, p[12], dt)
-    state[8] = approached(state[8], omega, p[13], dt)
-    vx = state[6] * p[8] + state[7] * p[14]
-    vy = state[7] * p[9] + state[6] * p[15]
-    omega = state[8] * p[10]
-    speed = hypot(vx, vy)
-    if speed > p[1]:
-        vx *= p[1] / speed
-        vy *= p[1] / speed
-    dx = c * vx - s * vy - state[3]
-    dy = s * vx + c * vy - state[4]
-    step = hypot(dx, dy)
-    if step > 0.0:
-        along, across = p[2], p[4]
-        if dx * state[3] + dy * state[4] < 0.0:
-            along, across = p[3], p[5]
-        ahead, aside = (c * dx + s * dy) / step, (c * dy - s * dx) / step
-        most = dt / sqrt((ahead / along) ** 2 + (aside / across) ** 2)
-        share = min(1.0, most / step)
-        state[3] += dx * share
-        state[4] += dy * share
-    turn = min(max(omega, -p[6]), p[6]) - state[5]
-    most = p[7] * dt
-    state[5] += min(max(turn, -most), most)
-    state[0] += state[3] * dt
-    state[1] += state[4] * dt
-    state[2] += state[5] * dt
+_VELOCITY = record_dtype(LocalVelocity)
+
+
+@compilable
+def _move(robot: Robot, followed: LocalVelocity, command: LocalVelocity, limits: Limits, dt: float) -> None:
+    """Move a robot on by one step under a command, within its limits."""
+    follow(followed, command, limits, dt)
+    drive(robot, followed, limits, dt)
+    robot.x += robot.vx * dt
+    robot.y += robot.vy * dt
+    robot.heading += robot.omega * dt
 
 
 @compiled
@@ -102,7 +83,11 @@ def motion_after(
     """
     count, last_sent = len(times), len(sent) - 1
     misses = np.full((count, 3), np.nan)
-    state = np.zeros(9)
+    # One array, which is used to the end, because records do not keep it.
+    state = np.zeros(12)
+    robot, followed = state[:6].view(ROBOT)[0], state[6:9].view(_VELOCITY)[0]
+    stand = state[9:].view(_VELOCITY)[0]
+    limits, wanted = p.view(_DRIVE_LIMITS)[0], commands.view(_VELOCITY)[:, 0]
     known, last, at = False, 0.0, 0
     for i in range(count):
         if known:
@@ -115,10 +100,8 @@ def motion_after(
                 if at < last_sent and sent[at + 1] + p[0] < until:
                     until = sent[at + 1] + p[0]
                 until = min(until, now + _MOTION_STEP)
-                if sent[at] + p[0] <= now + 1e-9:
-                    _drive(state, commands[at, 0], commands[at, 1], commands[at, 2], p, until - now)
-                else:
-                    _drive(state, 0.0, 0.0, 0.0, p, until - now)
+                command = wanted[at] if sent[at] + p[0] <= now + 1e-9 else stand
+                _move(robot, followed, command, limits, until - now)
                 now = until
         if np.isnan(poses[i, 0]):
             continue

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 
 from robobt.world.command import RobotCommand
-from robobt.world.driving import approached
+from robobt.world.driving import follow
 from robobt.world.limits import RobotLimits
 from robobt.world.state import Frame, RobotId
 
@@ -18,20 +18,6 @@ class FollowedCommand:
     vx: float = 0.0
     vy: float = 0.0
     omega: float = 0.0
-
-    def follow(self, command: RobotCommand, limits: RobotLimits, time: float) -> None:
-        """Follow a command for a time [s], with the lag of each axis."""
-        self.vx = approached(self.vx, command.vx, limits.lag, time)
-        self.vy = approached(self.vy, command.vy, limits.side_lag, time)
-        self.omega = approached(self.omega, command.omega, limits.turn_lag, time)
-
-    def reached(self, limits: RobotLimits) -> tuple[float, float, float]:
-        """Return what the robot makes of it: velocity ahead and to the left [m/s], turning rate [rad/s]."""
-        return (
-            limits.gain * self.vx + limits.cross_ahead * self.vy,
-            limits.side_gain * self.vy + limits.cross_aside * self.vx,
-            limits.turn_gain * self.omega,
-        )
 
 
 def followed_until(
@@ -47,12 +33,12 @@ def followed_until(
     followed, before = FollowedCommand(), None
     for since, command in sent:
         if before is not None and since > before[0]:
-            followed.follow(before[1], limits, min(since, time) - before[0])
+            follow(followed, before[1], limits, min(since, time) - before[0])
         if since > time:
             return followed
         before = since, command
     if before is not None:
-        followed.follow(before[1], limits, time - before[0])
+        follow(followed, before[1], limits, time - before[0])
     return followed
 
 

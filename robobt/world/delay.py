@@ -99,6 +99,7 @@ class DelayWatch:
     ) -> None:
         self._limits, self._own, self._nominal = limits, dict(own or {}), nominal
         self._robots: dict[RobotId, _RobotWatch] = {}
+        self._excess: float | None = None
         # What has to be compiled is so before the match, not in it.
         probe = _RobotWatch(limits)
         probe.sent(0.0, RobotCommand())
@@ -130,7 +131,10 @@ class DelayWatch:
         """
         watch = self._robots.get(robot)
         if watch is not None:
+            before = watch.delay
             watch.see(time, x, y, heading)
+            if watch.delay is not before:
+                self._excess = None
 
     def of(self, robot: RobotId) -> MeasuredDelay | None:
         """Return a robot's delay; None while too little was seen.
@@ -153,9 +157,11 @@ class DelayWatch:
         known = self.of(robot)
         if known is not None:
             return known.seconds
-        others = self.measured().items()
-        excess = [delay.seconds - self._expected(other) for other, delay in others if delay is not None]
-        return self._expected(robot) + (median(excess) if excess else 0.0)
+        if self._excess is None:
+            delays = {other: watch.delay for other, watch in self._robots.items()}
+            excess = [it.seconds - self._expected(other) for other, it in delays.items() if it is not None]
+            self._excess = median(excess) if excess else 0.0
+        return self._expected(robot) + self._excess
 
     def measured(self, age: float = 0.0) -> dict[RobotId, MeasuredDelay | None]:
         """Return the delay of each robot that was commanded; None while too little was seen.

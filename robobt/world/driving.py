@@ -1,11 +1,17 @@
-"""How a robot follows its command: lag, gains and cross-talk of its axes, speed, acceleration and braking."""
+"""How a robot follows its command: lag, gains and cross-talk of its axes, speed, acceleration and braking.
+
+The one law of the simulator, predictions, the vision's filter and identification. Python and compiled code
+both call it.
+"""
 
 from __future__ import annotations
 
 from math import cos, exp, hypot, sin, sqrt
 from typing import Protocol
 
-from robobt.world.compiled import compilable, compiled_lean
+from robobt.world.command import RobotCommand
+from robobt.world.compiled import compilable
+from robobt.world.limits import RobotLimits
 from robobt.world.records import Limits, Robot
 
 
@@ -24,8 +30,10 @@ _ROUNDING_SHARE = 1.0 - 1e-9
 """Tolerance, so that rounding does not exaggerate a change of velocity."""
 
 
-@compiled_lean
-def follow(followed: LocalVelocity, command: LocalVelocity, limits: Limits, dt: float) -> None:
+@compilable
+def follow(
+    followed: LocalVelocity, command: LocalVelocity | RobotCommand, limits: Limits | RobotLimits, dt: float
+) -> None:
     """Let a robot's controller follow its command with the lag of each axis."""
     followed.vx = approached(followed.vx, command.vx, limits.lag, dt)
     followed.vy = approached(followed.vy, command.vy, limits.side_lag, dt)
@@ -41,8 +49,8 @@ def approached(value: float, target: float, lag: float, dt: float) -> float:
     return target + (value - target) * exp(-dt / lag)
 
 
-@compiled_lean
-def reached(followed: LocalVelocity, limits: Limits) -> tuple[float, float, float]:
+@compilable
+def reached(followed: LocalVelocity, limits: Limits | RobotLimits) -> tuple[float, float, float]:
     """Return what a robot makes of the velocity that it follows: gains and cross-talk of its axes."""
     vx, vy = followed.vx, followed.vy
     return (
@@ -52,8 +60,8 @@ def reached(followed: LocalVelocity, limits: Limits) -> tuple[float, float, floa
     )
 
 
-@compiled_lean
-def drive(robot: Robot, followed: LocalVelocity, limits: Limits, dt: float) -> None:
+@compilable
+def drive(robot: Robot, followed: LocalVelocity, limits: Limits | RobotLimits, dt: float) -> None:
     """Move a robot's velocity towards the one that it follows, within its limits."""
     c, s = cos(robot.heading), sin(robot.heading)
     target_vx, target_vy, target_omega = reached(followed, limits)
@@ -69,7 +77,8 @@ def drive(robot: Robot, followed: LocalVelocity, limits: Limits, dt: float) -> N
     else:
         along, across = limits.acceleration, limits.lateral_acceleration
     # A change within the weaker limit needs no further check.
-    if abs(dx) + abs(dy) > _ROUNDING_SHARE * min(along, across) * dt:
+    weaker = along if along < across else across
+    if abs(dx) + abs(dy) > _ROUNDING_SHARE * weaker * dt:
         step = hypot(dx, dy)
         ahead = (c * dx + s * dy) / step
         aside = (c * dy - s * dx) / step
@@ -80,6 +89,14 @@ def drive(robot: Robot, followed: LocalVelocity, limits: Limits, dt: float) -> N
             dy *= most / step
     robot.vx += dx
     robot.vy += dy
-    turn = min(max(target_omega, -limits.max_turn), limits.max_turn) - robot.omega
-    most = limits.turn_acceleration * dt
-    robot.omega += min(max(turn, -most), most)
+    top = limits.max_turn
+    if target_omega > top:
+        target_omega = top
+    elif target_omega < -top:
+        target_omega = -top
+    turn, most = target_omega - robot.omega, limits.turn_acceleration * dt
+    if turn > most:
+        turn = most
+    elif turn < -most:
+        turn = -most
+    robot.omega += turn

@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
-from math import ceil, cos, exp, hypot, sin, sqrt
+from math import ceil, cos, exp, hypot, sin
 from statistics import fmean
 from typing import NamedTuple
 
 from robobt.world.answer import FollowedCommand
 from robobt.world.command import RobotCommand
+from robobt.world.driving import drive, follow
 from robobt.world.geometry import wrap_angle
 from robobt.world.limits import RobotLimits
 from robobt.world.predicted_ball import PLACE, STAND_STILL, RobotWay, met_ball
@@ -163,7 +164,7 @@ class PredictedWorld(WrappedWorld):
             if i + 1 < len(self._sent):
                 end = min(end, self._sent[i + 1].time + delay)
             if limits.longest_lag > 0.0 and begin < min(since, end):
-                followed.follow(command, limits, min(since, end) - begin)
+                follow(followed, command, limits, min(since, end) - begin)
             begin = max(since, begin)
             if end > begin:
                 _drive(state, followed, command, end - begin)
@@ -263,32 +264,13 @@ def _same(one: RobotState, other: RobotState) -> bool:
 
 
 def _drive(state: RobotState, followed: FollowedCommand, command: RobotCommand, time: float) -> None:
-    """Move a robot on under one command, as its limits let it; they form an ellipse in its frame."""
+    """Move a robot on under one command, as its limits let it."""
     limits = state.limits
     steps = max(1, ceil(time / _PREDICTION_STEP - 1e-9))
     dt = time / steps
     for _ in range(steps):
-        followed.follow(command, limits, dt)
-        vx, vy, omega = followed.reached(limits)
-        fast = hypot(vx, vy)
-        share = min(1.0, limits.max_speed / fast) if fast > 0.0 else 1.0
-        turn = min(limits.max_turn, max(-limits.max_turn, omega))
-        c, s = cos(state.heading), sin(state.heading)
-        dx = share * (c * vx - s * vy) - state.vx
-        dy = share * (s * vx + c * vy) - state.vy
-        step = hypot(dx, dy)
-        if step > 0.0:
-            ahead, aside = (c * dx + s * dy) / step, (c * dy - s * dx) / step
-            if dx * state.vx + dy * state.vy < 0.0:
-                along, across = limits.braking, limits.lateral_braking
-            else:
-                along, across = limits.acceleration, limits.lateral_acceleration
-            needed = sqrt((ahead / along) ** 2 + (aside / across) ** 2) * step
-            part = dt / needed if needed > dt else 1.0
-            state.vx += dx * part
-            state.vy += dy * part
-        most = limits.turn_acceleration * dt
-        state.omega += min(max(turn - state.omega, -most), most)
+        follow(followed, command, limits, dt)
+        drive(state, followed, limits, dt)
         state.x += state.vx * dt
         state.y += state.vy * dt
         state.heading = wrap_angle(state.heading + state.omega * dt)

@@ -16,6 +16,7 @@ from robobt.league.estimate.offsets import MeanOffsets, OffsetCovariance
 from robobt.league.estimate.rivals import Rivals
 from robobt.world.answer import FollowedCommand, followed_until
 from robobt.world.command import RobotCommand
+from robobt.world.driving import drive, follow
 from robobt.world.geometry import wrap_angle
 from robobt.world.limits import RobotLimits
 
@@ -239,38 +240,13 @@ def predict_robot(
             index += 1
         until = min(end, commands[index].since) if index < len(commands) else end
         until = min(until, now + _TURNING_STEP)
-        command = None
+        dt = until - now
+        vx, vy, omega = state.vx, state.vy, state.omega
         if index:
-            followed.follow(commands[index - 1].command, limits, until - now)
-            command = followed.reached(limits)
-        _drive(state, command, limits, until - now)
+            follow(followed, commands[index - 1].command, limits, dt)
+            drive(state, followed, limits, dt)
+        state.x += (vx + state.vx) / 2.0 * dt
+        state.y += (vy + state.vy) / 2.0 * dt
+        state.heading = wrap_angle(state.heading + (omega + state.omega) / 2.0 * dt)
         now = until
     return state
-
-
-def _drive(
-    state: RobotMotion, command: tuple[float, float, float] | None, limits: RobotLimits, dt: float
-) -> None:
-    """Drive one step; a robot's wheels limit its acceleration to an ellipse in its own frame."""
-    vx, vy, omega = state.vx, state.vy, state.omega
-    if command is not None:
-        c, s = cos(state.heading), sin(state.heading)
-        ahead, aside, turn = command
-        dx = c * ahead - s * aside - vx
-        dy = s * ahead + c * aside - vy
-        size = hypot(dx, dy)
-        if size > 0.0:
-            ahead, aside = (c * dx + s * dy) / size, (c * dy - s * dx) / size
-            if dx * vx + dy * vy < 0.0:
-                along, across = limits.braking, limits.lateral_braking
-            else:
-                along, across = limits.acceleration, limits.lateral_acceleration
-            needed = sqrt((ahead / along) ** 2 + (aside / across) ** 2) * size
-            share = dt / needed if needed > dt else 1.0
-            state.vx = vx + dx * share
-            state.vy = vy + dy * share
-        most = limits.turn_acceleration * dt
-        state.omega = omega + min(max(turn - omega, -most), most)
-    state.x += (vx + state.vx) / 2.0 * dt
-    state.y += (vy + state.vy) / 2.0 * dt
-    state.heading = wrap_angle(state.heading + (omega + state.omega) / 2.0 * dt)
