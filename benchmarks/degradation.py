@@ -65,6 +65,8 @@ def degradation(
 ) -> dict[str, dict[str, Evaluation]]:
     """Return results by cell and player, all in the environment that the first policy was trained in.
 
+    In Shoot robots are driven gently if any of the policies needs it.
+
     Args:
         sources: runs or models of one task; each observes and acts as it was trained to.
         starts: of each cell.
@@ -80,6 +82,9 @@ def degradation(
     for source, (environment, _) in policies.items():
         if type(environment) is not type(first):
             raise JudgingError(f"{source}: was trained for another task than {sources[0]}")
+    if isinstance(first, ShootSettings):
+        gently = any(getattr(environment, "gentle", False) for environment, _ in policies.values())
+        first = first.model_copy(update={"gentle": gently})
     for name, changes in CELLS.items():
         if cells and name not in cells:
             continue

@@ -7,7 +7,9 @@ from typing import Any
 
 import numpy as np
 import pytest
+from pydantic import ValidationError
 
+from robobt.config.validation import first_problem
 from robobt.learning.envs import ShootReward, ShootSettings, ShootTask, run_starts
 from robobt.learning.envs.scripted import turn_and_kick
 from robobt.world.geometry import wrap_angle
@@ -328,6 +330,17 @@ def test_a_gentle_robot_brakes_as_hard_as_its_dribbler_holds_the_ball_however_la
         expected = max(1.2 - held * max(0.0, tick * period - delay), 0.0)
         assert made.arenas.robots[0, 0, 4] == pytest.approx(expected, abs=1e-6)
         assert made.arenas.contact[0, 0]
+
+
+@pytest.mark.parametrize("memory", [{"actions": 1}, {"observations": 1}])
+def test_a_policy_with_a_memory_is_trained_as_gently_as_the_skill_drives_it(memory: dict[str, int]) -> None:
+    """Else it would meet another robot in a match than in training."""
+    settings = {"memory": memory}
+    with pytest.raises(ValidationError) as caught:
+        ShootSettings.model_validate(settings)
+    field, problem = first_problem(caught.value, ShootSettings, settings)
+    assert field == "gentle"
+    assert "true with a memory" in problem
 
 
 def test_late_robots_start_where_they_can_still_stop() -> None:

@@ -22,7 +22,7 @@ from robobt.world import DIVISION_B, BallState, Frame, RobotState
 from tests.models.made_models import Aimed, shoot_card, write_model
 from tests.skills.fixed_world import Alone
 
-SETTINGS = ShootSettings.model_validate({"memory": {"actions": 3, "observations": 2}})
+SETTINGS = ShootSettings.model_validate({"memory": {"actions": 3, "observations": 2}, "gentle": True})
 
 
 class Recalling(nn.Module):

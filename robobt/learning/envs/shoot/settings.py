@@ -7,7 +7,8 @@ from typing import Annotated, Self
 
 from pydantic import Field, model_validator
 
-from robobt.learning.envs.settings import OrderedSettings, Span, TaskSettings, by_name
+from robobt.config.errors import FieldError
+from robobt.learning.envs.settings import MemorySettings, OrderedSettings, Span, TaskSettings, by_name
 from robobt.learning.envs.shoot.rewards import SHOOT_REWARDS, ShootReward
 from robobt.models.actions import SHOOT_ACTION, ActionScaling
 
@@ -38,7 +39,9 @@ class ShootSettings(TaskSettings):
     )
     starts: ShootStarts = ShootStarts()
     gentle: bool = Field(
-        False, description="turn and brake only as hard as the dribbler holds the ball, as the skill does"
+        False,
+        description="turn and brake only as hard as the dribbler holds the ball, as the skill does with a "
+        "policy that has a memory, which needs it",
     )
     lost_distance: float | None = Field(
         None, gt=0.1, le=10, description="an unkicked ball farther away than this ends the episode [m]"
@@ -48,4 +51,10 @@ class ShootSettings(TaskSettings):
     def _kicks(self) -> Self:
         if self.action.kind != "turn_and_kick":
             raise ValueError("action: Shoot needs turn_and_kick actions")
+        return self
+
+    @model_validator(mode="after")
+    def _driven_as_in_a_match(self) -> Self:
+        if self.memory != MemorySettings() and not self.gentle:
+            raise FieldError("gentle", "must be true with a memory: the skill drives gently then")
         return self
