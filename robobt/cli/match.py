@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import tempfile
 from contextlib import ExitStack
+from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -27,7 +28,7 @@ from robobt.cli.option_groups.page import Page
 from robobt.cli.option_groups.refereeing import Refereeing
 from robobt.cli.option_groups.scenario import TeamChanges
 from robobt.cli.outputs import PAGES, RECORDING, make_folders
-from robobt.cli.shown.round_trips import delay_figures, print_delays
+from robobt.cli.shown.round_trips import print_delays
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -35,8 +36,6 @@ if TYPE_CHECKING:
     from robobt.match import MatchLoop, Scenario
     from robobt.match.refereeing import RefereeFactory
     from robobt.match.results.results import MatchResult
-    from robobt.world.delay import MeasuredDelay
-    from robobt.world.state import RobotId
 
 
 def match(
@@ -75,7 +74,7 @@ def match(
     real_time_factor: simulated time over wall time, in each process; trace: a hash that
     is equal for equal runs; recording: the file written, or null; delays: where they are measured, each
     robot's delay at the end of the last trial, from a command to its seen effect (seconds, low, high; null if
-    not seen enough), or null with several --workers, which do not report it.
+    not seen enough).
 
     Exit code 3 when a robot's tree failed in some tick, though all trials were played.
     """
@@ -143,7 +142,6 @@ def _play_trials(
     processes = run.processes(count, where.alone)
     file, layers = kept.recording(loaded.name, count), layer_names(kept.record_layers)
     make_folders({"--record": file, "--out": kept.out})
-    delays: dict[RobotId, MeasuredDelay | None] = {}
     with tempfile.TemporaryDirectory() as folder:
         as_page = file is not None and file.name.lower().endswith(PAGES)
         recording = Path(folder) / f"trial{RECORDING}" if as_page else file
@@ -154,8 +152,6 @@ def _play_trials(
 
                 server = stack.enter_context(page.server())
                 play = Live(server, where.speed_factor, where.paused).conduct
-            if processes == 1:
-                play = _asking(play, delays)
             progress = stack.enter_context(Progress(loaded.name, count))
             played = run_trials_in(
                 loaded,
@@ -177,13 +173,13 @@ def _play_trials(
             from robobt.live.replay_html import write_html
 
             write_html(recording, written)  # type: ignore[arg-type]
-    summary = played.summary()
+    summary, delays = played.summary(), played.results[-1].delays
     if as_json:
         extra = {
             "requested": count,
             "interrupted": played.interrupted,
             "recording": None if written is None else str(written),
-            "delays": delay_figures(delays) if processes == 1 else None,
+            "delays": {robot: it and asdict(it) for robot, it in delays.items()},
         }
         print_json({**summary.to_json(), **extra})
     else:
@@ -196,19 +192,6 @@ def _play_trials(
         raise typer.Exit(130)
     if failed:
         raise typer.Exit(TREES_FAILED)
-
-
-def _asking(
-    play: Callable[[MatchLoop], MatchResult], delays: dict[RobotId, MeasuredDelay | None]
-) -> Callable[[MatchLoop], MatchResult]:
-    """Return what plays a match, and then enters the robots' delays as they are known there."""
-
-    def play_and_ask(match: MatchLoop) -> MatchResult:
-        result = play(match)
-        delays.update(match.world.delays())
-        return result
-
-    return play_and_ask
 
 
 def _changed(scenario: Scenario, trees: Trees) -> Scenario:

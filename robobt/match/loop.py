@@ -20,6 +20,7 @@ from robobt.match.players import Player, make_players, run_tree, shut_down
 from robobt.match.recording.capture import Capture
 from robobt.match.referee.events import RefereeEvent
 from robobt.match.refereeing import RefereeFactory, own_referee
+from robobt.match.results.delays import delay_results
 from robobt.match.results.measures import Measures, Trace
 from robobt.match.results.results import MatchResult
 from robobt.match.results.teams import TeamStatistics
@@ -226,6 +227,7 @@ class MatchLoop(Closing):
             trace=self._trace.hexdigest(),
             wall_time=wall_time,
             teams={} if self._teams is None else self._teams.result(),
+            delays=delay_results(self.world.delays()),
         )
 
     def decide(self, frame: Frame) -> dict[RobotId, RobotCommand]:

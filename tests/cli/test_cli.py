@@ -591,8 +591,8 @@ def test_a_match_tells_the_delays_that_it_has_measured():
     assert delay["low"] < delay["seconds"] < delay["high"]
     assert delay["seconds"] < 0.01
     assert "blue 0" in robobt(*arguments).stdout
-    # None was measured, and none is told, are two things.
-    assert told(*arguments, "--trials", "2", "--workers", "2")["delays"] is None
+    two = *arguments, "--trials", "2"
+    assert told(*two, "--workers", "2")["delays"] == told(*two, "--workers", "1")["delays"] != {}
 
 
 def test_models_lie_where_the_package_looks_for_them():

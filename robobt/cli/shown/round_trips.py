@@ -3,30 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
 from robobt.cli.common import console, table
 
 if TYPE_CHECKING:
     from robobt.league.serve.server import SimServer
-    from robobt.world.delay import MeasuredDelay
-    from robobt.world.state import RobotId
-
-
-def delay_figures(delays: Mapping[RobotId, MeasuredDelay | None]) -> dict[str, Any]:
-    """Return each robot's delay by its name: seconds, low and high; None if not seen enough."""
-    return {
-        str(robot): None if it is None else {"seconds": it.seconds, "low": it.low, "high": it.high}
-        for robot, it in sorted(delays.items())
-    }
+    from robobt.match.results.delays import DelayResult
 
 
 def trip_figures(server: SimServer) -> dict[str, Any]:
     """Return delay and round trips of each robot of a served field by its name."""
-    delays = delay_figures(server.delays())
+    from robobt.match.results.delays import delay_results
+
+    delays = delay_results(server.delays())
     return {
         str(robot): {
-            "delay": delays[str(robot)],
+            "delay": (delay := delays[str(robot)]) and asdict(delay),
             "commands": it.commands,
             "lost": it.lost,
             "round_trip": {
@@ -41,18 +35,20 @@ def trip_figures(server: SimServer) -> dict[str, Any]:
     }
 
 
-def print_delays(delays: Mapping[RobotId, MeasuredDelay | None]) -> None:
+def print_delays(delays: Mapping[str, DelayResult | None]) -> None:
     """Print each robot's delay, if any is measured."""
     if delays:
         shown = table("robot", "delay, with 95 % interval")
-        for robot, it in sorted(delays.items()):
-            shown.add_row(str(robot), _delay(it))
+        for robot, it in delays.items():
+            shown.add_row(robot, _delay(it))
         console.print(shown)
 
 
 def print_trips(server: SimServer) -> None:
     """Print delay and round trips of each robot of a served field, if any was commanded."""
-    delays, robots = server.delays(), server.field.trips.robots
+    from robobt.match.results.delays import delay_results
+
+    delays, robots = delay_results(server.delays()), server.field.trips.robots
     if not robots:
         return
     shown = table(
@@ -61,7 +57,7 @@ def print_trips(server: SimServer) -> None:
     for robot, it in sorted(robots.items()):
         shown.add_row(
             str(robot),
-            _delay(delays[robot]),
+            _delay(delays[str(robot)]),
             str(it.answered),
             f"{1e3 * it.mean:.1f} ms",
             f"{1e6 * it.variance:.1f} ms²",
@@ -73,7 +69,7 @@ def print_trips(server: SimServer) -> None:
     console.print(shown)
 
 
-def _delay(delay: MeasuredDelay | None) -> str:
+def _delay(delay: DelayResult | None) -> str:
     if delay is None:
         return "not seen enough"
     return f"{1e3 * delay.seconds:.0f} ms ({1e3 * delay.low:.0f} to {1e3 * delay.high:.0f})"

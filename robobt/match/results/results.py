@@ -14,6 +14,7 @@ from typing import TypeVar
 
 from pydantic import ConfigDict, TypeAdapter, ValidationError
 
+from robobt.match.results.delays import DelayResult
 from robobt.match.results.teams import TeamResult
 from robobt.statistics import wilson_interval
 
@@ -67,6 +68,7 @@ class MatchResult:
         trace: hash over every true state; equal traces mean equal matches.
         wall_time: real time of playing, without compilation [s]; only this may differ between two runs.
         teams: figures of each team by its name ("blue"), if there was a referee.
+        delays: where delays are measured, each robot's by its name; None if not seen enough.
     """
 
     __pydantic_config__ = _AS_WRITTEN
@@ -84,6 +86,7 @@ class MatchResult:
     trace: str
     wall_time: float = 0.0
     teams: Mapping[str, TeamResult] = field(default_factory=dict)
+    delays: Mapping[str, DelayResult | None] = field(default_factory=dict)
 
     def _repr_html_(self) -> str:
         """Return the HTML for a notebook."""
