@@ -104,7 +104,18 @@ class TripWatch:
         if robot in self._open and self._picture_at is not None:
             self._open.discard(robot)
             trips.add(now - self._picture_at)
-        self._delays.sent(at, {robot: command})
+        if not lost:
+            # Its client, which does not know, counts it as sent; then waiting for the next one is delay too.
+            self._delays.sent(at, {robot: command})
+
+    def stopped(self, robot: RobotId, at: float) -> None:
+        """Take note that the field stops a robot whose commands stay away.
+
+        Args:
+            robot: which.
+            at: time on the field [s].
+        """
+        self._delays.sent(at, {robot: RobotCommand()})
 
     def stepped(self, at: float, robots: Mapping[RobotId, RobotState]) -> None:
         """Take note of where robots are at a time on the field [s]."""
@@ -115,6 +126,8 @@ class TripWatch:
 
     def delays(self, age: float) -> dict[RobotId, MeasuredDelay | None]:
         """Return each commanded robot's delay, from a command's coming until its effect is sent.
+
+        Commands that the field's realism has lost do not make it longer.
 
         Args:
             age: of a picture when it is sent [s].

@@ -136,6 +136,8 @@ class ServedField:
     def step(self) -> None:
         """Simulate one period; robots whose last command has timed out are commanded to stop."""
         late = self._last_command < self.time - COMMAND_TIMEOUT + 1e-9
+        for i in (late & self._commands[0, :, :3].any(axis=1)).nonzero()[0]:
+            self.trips.stopped(self._ids[i], self.time)
         self._commands[0, late] = 0.0
         self._arenas.step(self._commands)
         self._ticks += 1

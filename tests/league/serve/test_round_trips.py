@@ -57,6 +57,33 @@ def test_a_round_trip_is_from_a_picture_to_the_first_command() -> None:
     assert trips.pictures == 3
 
 
+def measured(loss: float, seed: int, silent: range = range(0)) -> float:
+    """The delay of a robot whose commands take 85 ms to be seen, of which a share gets lost [s]."""
+    realism = RealismSettings(command_delay=0.05, vision_delay=0.035, command_loss=loss)
+    served = ServedField(DIVISION_B, line_up(DIVISION_B, 2), SimSettings(realism=realism), seed=seed)
+    with SimServer(served, free_endpoints()) as server:
+        for tick in range(300):
+            turn = 3.0 if tick // 20 % 2 else -3.0
+            if tick % 40 not in silent:
+                served.command(ROBOT, RobotCommand(0.5 * turn / 3.0, 0.0, turn))
+            server.step()
+        delay = server.delays()[ROBOT]
+    assert delay is not None
+    return delay.seconds
+
+
+@pytest.mark.integration
+@pytest.mark.parametrize("seed", [0, 1, 2])
+def test_lost_commands_make_no_robot_seem_late(seed: int) -> None:
+    # Each is 8 ms late on the average at this loss, if it counts as given when it is lost.
+    assert measured(0.3, seed) == pytest.approx(measured(0.0, seed), abs=0.001)
+
+
+@pytest.mark.integration
+def test_a_robot_that_is_stopped_for_want_of_commands_does_not_seem_late() -> None:
+    assert measured(0.0, 0, silent=range(2, 20)) == pytest.approx(measured(0.0, 0), abs=0.002)
+
+
 @pytest.mark.integration
 def test_a_server_knows_how_late_its_robots_obey_and_what_got_lost(
     capsys: pytest.CaptureFixture[str],
