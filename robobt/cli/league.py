@@ -191,7 +191,8 @@ def serve(
             from robobt.league.serve.watched import WatchedField
 
             shown = stack.enter_context(page.server())
-            watched = WatchedField(shown, scenario or "robobt serve", server.referee)
+            name = scenario or "robobt serve"
+            watched = WatchedField(shown, name, server.referee, server.delays)
         if not as_json:
             _announce(server)
         # A signal is how one stops serving.

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
+
 from robobt.league.serve.referee import ServedReferee
 from robobt.league.serve.served_field import ServedField
 from robobt.league.wire.commands import BallTeleport, Teleport
@@ -11,6 +13,7 @@ from robobt.live.server import Server
 from robobt.live.stream import Stream
 from robobt.match.recording import RecordedRobot, RecordingHeader
 from robobt.match.recording.capture import Capture
+from robobt.world.delay import MeasuredDelay
 from robobt.world.state import Frame, RobotId
 
 _STEPS_TO_DELAYS = 60
@@ -24,10 +27,17 @@ class WatchedField:
         server: where it is watched.
         name: what the page calls it.
         referee: who decides the game, None without one.
+        delays: returns how late each commanded robot obeys.
     """
 
-    def __init__(self, server: Server, name: str, referee: ServedReferee | None) -> None:
-        self._server, self._name, self._referee = server, name, referee
+    def __init__(
+        self,
+        server: Server,
+        name: str,
+        referee: ServedReferee | None,
+        delays: Callable[[], Mapping[RobotId, MeasuredDelay | None]],
+    ) -> None:
+        self._server, self._name, self._referee, self._delays = server, name, referee, delays
         self._capture: Capture | None = None
         self._robots: frozenset[RobotId] = frozenset()
         self._grip = HeldObjects()
@@ -49,7 +59,7 @@ class WatchedField:
         capture.tick(truth)
         self._ticks += 1
         if self._ticks % _STEPS_TO_DELAYS == 0:
-            self._server.tell_delays(field.trips.delays(field.settings.realism.vision_delay))
+            self._server.tell_delays(self._delays())
 
     def _captured(self, truth: Frame, period: float) -> Capture:
         """Return the capture of the field, a new one if a robot has appeared for the first time."""

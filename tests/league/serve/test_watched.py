@@ -5,11 +5,14 @@ from time import perf_counter
 import pytest
 
 from robobt.league.serve.served_field import ServedField
+from robobt.league.serve.server import SimServer
 from robobt.league.serve.watched import WatchedField
 from robobt.league.wire.commands import Teleport
 from robobt.live.messages import Act, MoveBall, MoveRobot, Pause, TakeOff
 from robobt.live.server import Server
-from robobt.world import DIVISION_B, Placement, RobotId, Team
+from robobt.sim.realism import RealismSettings
+from robobt.world import DIVISION_B, Placement, RobotCommand, RobotId, Team
+from tests.league.served import free_endpoints
 from tests.live.test_stream import decoded
 
 BLUE_3, YELLOW_5 = RobotId(Team.BLUE, 3), RobotId(Team.YELLOW, 5)
@@ -18,7 +21,7 @@ BLUE_3, YELLOW_5 = RobotId(Team.BLUE, 3), RobotId(Team.YELLOW, 5)
 def test_robots_and_ball_of_a_served_field_can_be_moved() -> None:
     field = ServedField(DIVISION_B, Placement({BLUE_3: (-1.0, 0.0, 0.0)}, (0.0, 0.0, 0.0, 0.0)))
     server = Server()
-    watched = WatchedField(server, "served", None)
+    watched = WatchedField(server, "served", None, dict)
 
     def step(*acts: Act) -> None:
         for act in acts:
@@ -52,3 +55,21 @@ def test_robots_and_ball_of_a_served_field_can_be_moved() -> None:
     assert server.audience.stream is not stream
     assert server.audience.stream is not None
     assert [robot["number"] for robot in server.audience.stream.header["robots"]] == [3, 5]
+
+
+@pytest.mark.integration
+def test_delays_follow_a_client_that_makes_the_pictures_older() -> None:
+    field = ServedField(DIVISION_B, Placement({BLUE_3: (-1.0, 0.0, 0.0)}, (0.0, 0.0, 0.0, 0.0)))
+    page = Server()
+    with SimServer(field, free_endpoints()) as server:
+        watched = WatchedField(page, "served", None, server.delays)
+        server.ports.set_realism(RealismSettings(vision_delay=0.2))
+        for tick in range(120):
+            field.command(BLUE_3, RobotCommand(omega=3.0 if tick // 20 % 2 else -3.0))
+            server.step()
+            watched(field)
+        measured = server.delays()[BLUE_3]
+    assert measured is not None
+    told = page.audience.state["delays"]["blue 3"]
+    assert told[0] == pytest.approx(measured.seconds, abs=1e-3)
+    assert told[0] > 0.19
