@@ -40,10 +40,10 @@ def identify(
     its 95 % interval, or the words "not seen enough".
 
     Keys of --json: seconds (of play); figures: by name value, low, high, count (events it rests on), seen,
-    unit.
+    unit; taken: what was not identified and is the preset's (--base), where that of default differs.
     """
     from robobt.config.errors import unknown_name
-    from robobt.identify.preset_file import write_preset
+    from robobt.identify.preset_file import taken_from, write_preset
     from robobt.identify.report import as_json as figures_of
     from robobt.identify.report import identify as identified_from
     from robobt.identify.report import parts_of
@@ -62,12 +62,16 @@ def identify(
             found = identified_from(seen, progress.advance)
     except ValueError as error:
         raise NothingToIdentifyError(f"{file}: {error}") from error
+    taken = taken_from(found, base)
     if out is not None:
         write_preset(found, out, base)
     if as_json:
-        print_json(figures_of(found))
+        print_json({**figures_of(found), "taken": taken})
         return
     _show(found)
+    if taken:
+        names = ", ".join(f"{name} {value}" for name, value in taken.items())
+        say(f"Not identified, from the preset {base} (default has other values): {names}")
     if out is not None:
         say(f"Preset file: {out}; play in it with --set simulator.preset={out}")
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
@@ -11,6 +12,7 @@ from robobt.config.yaml import write_yaml
 from robobt.identify.estimate import Estimate
 from robobt.identify.report import Identification
 from robobt.identify.robot_motion import DRIVE_PARAMETERS
+from robobt.sim.settings import PRESETS
 
 _SIGNIFICANT_DIGITS = 4
 """Significant digits in the file."""
@@ -25,7 +27,9 @@ _AT_LEAST = {"cross_ahead": -0.5, "cross_aside": -0.5}
 def preset_of(identified: Identification, base: str = "default") -> dict[str, object]:
     """Return simulator settings with what was identified; the rest is that of a preset.
 
-    The limits are the medians of the robots whose commands were known, or of all robots without such.
+    The limits are the medians of the robots whose commands were known, or of all robots without such. A whole
+    delay that was identified stands in place of all delays of the preset; what wheels are late by themselves
+    is part of it.
 
     Args:
         identified: what was identified.
@@ -44,8 +48,6 @@ def preset_of(identified: Identification, base: str = "default") -> dict[str, ob
         for name, figure in (
             ("ball_noise", identified.ball.noise),
             *identified.noise._asdict().items(),
-            # A team cannot distinguish late pictures from late commands.
-            ("vision_delay", identified.delay),
         )
         if figure.seen
     }
@@ -55,6 +57,12 @@ def preset_of(identified: Identification, base: str = "default") -> dict[str, ob
         values = [robot.figures[name].value for robot in own if robot.figures[name].seen]
         if values:
             limits[name] = _digits(max(float(np.median(values)), _AT_LEAST.get(name, 0.0)))
+    if identified.delay.seen:
+        by_wheels = _delay_of_wheels(base)
+        # A team cannot distinguish late pictures from late commands and robots.
+        rest = max(0.0, identified.delay.value - by_wheels)
+        realism |= {"vision_delay": _digits(rest), "command_delay": 0.0}
+        limits |= {"dead_time": 0.0, "reaction": by_wheels}
     settings: dict[str, object] = {"preset": base}
     kept, returned = identified.kicks.kept, identified.kicks.returned
     if kept.seen:
@@ -65,6 +73,24 @@ def preset_of(identified: Identification, base: str = "default") -> dict[str, ob
         if part:
             settings[name] = part
     return settings
+
+
+def taken_from(identified: Identification, base: str) -> dict[str, object]:
+    """Return what a preset file takes from its preset because it was not identified, by dotted names.
+
+    What the preset ``default`` has too is left out.
+
+    Args:
+        identified: what was identified.
+        base: the preset.
+    """
+    own = set(_flat(preset_of(identified, base)))
+    usual = _flat(PRESETS["default"].model_dump())
+    return {
+        name: value
+        for name, value in _flat(PRESETS[base].model_dump()).items()
+        if name not in own and (name not in usual or usual[name] != value)
+    }
 
 
 def write_preset(identified: Identification, path: Path, base: str = "default") -> None:
@@ -79,6 +105,10 @@ def write_preset(identified: Identification, path: Path, base: str = "default") 
         OSError: the file cannot be written.
     """
     comments = [f"# {name}: {figure.text()}" for name, figure in identified.figures()]
+    taken = taken_from(identified, base)
+    if taken:
+        comments += ["#", f"# Not identified, from the preset {base}; default has other values:"]
+        comments += [f"# {name}: {value}" for name, value in taken.items()]
     head = [
         f"# Identified by robobt from {identified.seconds:.0f} s of play: value (95 % interval).",
         "# robobt match SCENARIO --set simulator.preset=THIS_FILE plays in it.",
@@ -87,6 +117,23 @@ def write_preset(identified: Identification, path: Path, base: str = "default") 
         "",
     ]
     write_atomically(path, "\n".join(head) + write_yaml(preset_of(identified, base)))
+
+
+def _delay_of_wheels(base: str) -> float:
+    """Return by how much robots with a preset's wheels are late whatever the settings say [s]."""
+    settings = PRESETS[base]
+    return 0.0 if settings.wheels is None else settings.limits.reaction
+
+
+def _flat(settings: Mapping[str, object], prefix: str = "") -> dict[str, object]:
+    """Return nested settings by dotted names."""
+    flat: dict[str, object] = {}
+    for name, value in settings.items():
+        if isinstance(value, Mapping):
+            flat |= _flat(value, f"{prefix}{name}.")
+        else:
+            flat[f"{prefix}{name}"] = value
+    return flat
 
 
 def _rounded(figure: Estimate) -> float:

@@ -128,6 +128,28 @@ def test_what_was_not_seen_enough_goes_into_no_preset() -> None:
     assert settings_from(preset_of(found)).realism.robot_noise == 0.0
 
 
+@pytest.mark.parametrize("base", ["default", "erforce", "grsim", "real_2025"])
+def test_an_identified_delay_stands_in_place_of_all_that_the_base_has(base: str) -> None:
+    late = SimSettings(realism=RealismSettings(vision_delay=0.03, command_delay=0.02))
+    settings = settings_from(preset_of(identify(driven(RobotLimits(dead_time=0.04), late)), base))
+    whole = settings.realism.vision_delay + settings.limits.obeys_after(settings.realism.command_delay)
+    assert whole == pytest.approx(0.09, abs=0.006)
+
+
+def test_what_the_base_alone_says_is_told(recording: Path, tmp_path: Path) -> None:
+    out = tmp_path / "field.yaml"
+    arguments = ["record", "identify", str(recording), "--base", "erforce", "--out", str(out)]
+    shown = CliRunner().invoke(app, arguments).stdout
+    assert "preset erforce" in shown
+    assert "limits.kick_carried 0.9" in " ".join(shown.split())
+    assert "# limits.kick_carried: 0.9" in out.read_text()
+    # It was identified, though erforce has another.
+    assert "limits.acceleration" not in out.read_text()
+    taken = json.loads(CliRunner().invoke(app, [*arguments, "--json"]).stdout)["taken"]
+    assert taken["limits.kick_carried"] == 0.9
+    assert "ball.stop_speed" not in taken
+
+
 def test_the_command_prints_figures_and_writes_the_file(recording: Path, tmp_path: Path) -> None:
     out = tmp_path / "field.yaml"
     done = CliRunner().invoke(app, ["record", "identify", str(recording), "--out", str(out), "--json"])
