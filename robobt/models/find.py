@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from hashlib import sha256
 from pathlib import Path
 
 from robobt.config.errors import close_names
 from robobt.config.renamed import RENAMED
 from robobt.config.resources import models_folder
-from robobt.models.card import Kind
+from robobt.models.card import Kind, ModelCard
 from robobt.models.file import (
     SUFFIXES,
     ModelError,
@@ -71,7 +71,7 @@ def read_fitting_model(
     name_or_path: str | Path,
     *,
     kind: Kind | None = None,
-    skill: str | None = None,
+    skill: str | Sequence[str] | None = None,
     observation: ObservationSpec | None = None,
 ) -> ModelFile:
     """Read a model's file and check that its card fits the use; neither torch nor onnxruntime is imported.
@@ -79,7 +79,7 @@ def read_fitting_model(
     Args:
         name_or_path: name of a shipped model, or a file.
         kind: required kind; None for any.
-        skill: skill that will use it; None for any.
+        skill: skill that will use it, or several of which one will; None for any.
         observation: observation that it will be given; None for any.
 
     Raises:
@@ -87,16 +87,29 @@ def read_fitting_model(
     """
     file = read_model_file(find_model(name_or_path))
     card = file.card
+    skills = [skill] if isinstance(skill, str) else skill
     problem = card.observation.problem()
     if kind is not None and card.kind != kind:
         problem = f"is a {card.kind.replace('_', ' ')}, not a {kind.replace('_', ' ')}"
-    elif skill is not None and card.skill != skill:
-        problem = f"is a model for {card.skill}, not for {skill}"
+    elif skills is not None and card.skill not in skills:
+        problem = f"is a model for {card.skill}, not for {_one_of(skills)}{_trained_in(card)}"
     elif observation is not None and card.observation.name != observation.name:
         problem = f"takes the observation {card.observation.name!r}, not {observation.name!r}"
     if problem is not None:
         raise ModelError(f"{file.path}: {problem}")
     return file
+
+
+def _one_of(names: Sequence[str]) -> str:
+    *others, last = names
+    return f"{', '.join(others)} or {last}" if others else last
+
+
+def _trained_in(card: ModelCard) -> str:
+    """Return the words that name the task of a model's training, none where its card doesn't."""
+    settings = card.training.get("settings")
+    task = settings.get("task") if isinstance(settings, dict) else None
+    return f"; it was trained in the task {task}" if isinstance(task, str) else ""
 
 
 def is_path(text: str) -> bool:

@@ -34,8 +34,16 @@ def attack_learned(*, policy: str = "", patience: float = 0.6) -> Behaviour:
 
 
 def learned(policy: str) -> Skill:
-    """Return the leaf for which the model was trained."""
-    skill = read_fitting_model(policy, kind="policy").card.skill
+    """Return the leaf for which the model was trained.
+
+    Args:
+        policy: name or file of a model for Score, Duel or another task with several robots.
+
+    Raises:
+        ModelError: it is another model; the message names its skill and task, and those that fit.
+    """
+    attacks = "Score", "Duel", "LearnedSkill"
+    skill = read_fitting_model(policy, kind="policy", skill=attacks).card.skill
     if skill == "Duel":
         return Duel(policy=policy)
     return Score(policy=policy) if skill == "Score" else LearnedSkill(model=policy)

@@ -6,6 +6,7 @@ import torch
 from paper.deployed import Situation, deployed_scenario
 from robobt.match import run_trials_in, summarise
 from robobt.match.scenario.scenario import Scenario
+from robobt.models.file import ModelError
 from robobt.plays import attack_learned
 from robobt.skills import Duel, LearnedSkill, Score, Skill
 from robobt.testing import Trial, alone, eventually, frame, goal_for, never, robot
@@ -52,6 +53,14 @@ def test_any_policy_attacks_as_the_leaf_that_it_is_for(leaf: type[Skill], tmp_pa
     leaves = [type(node) for node in attack_learned(policy=str(model)).iterate()]
     assert [kind for kind in leaves if kind in (Score, Duel, LearnedSkill)] == [leaf]
     assert Alone(attack_learned()).tick(frame(robot())) is Status.FAILURE
+
+
+def test_a_policy_for_something_else_does_not_attack():
+    said = "is a model for Goalkeeper, not for Score, Duel or LearnedSkill; it was trained in the task save$"
+    with pytest.raises(ModelError, match=said):
+        attack_learned(policy="save_ppo")
+    with pytest.raises(ModelError, match="is a model for Shoot, not for Score"):
+        attack_learned(policy="shoot_ddpg")
 
 
 def test_a_policy_that_stops_at_the_ball_gets_it_from_the_written_skills(tmp_path: Path):
