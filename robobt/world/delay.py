@@ -73,8 +73,8 @@ class MeasuredDelay(NamedTuple):
 
     @property
     def low(self) -> float:
-        """Lower end of the 95 % interval [s]."""
-        return self.seconds - _95 * self.error
+        """Lower end of the 95 % interval [s]; no effect is seen before its cause."""
+        return max(0.0, self.seconds - _95 * self.error)
 
     @property
     def high(self) -> float:

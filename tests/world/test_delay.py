@@ -14,7 +14,7 @@ from benchmarks.late_commands import PARTS, LateCommands
 from robobt.sim import SimWorld, preset
 from robobt.sim.realism import RealismSettings
 from robobt.world.command import RobotCommand
-from robobt.world.delay import DelayWatch
+from robobt.world.delay import DelayWatch, MeasuredDelay
 from robobt.world.detections import Detections
 from robobt.world.field import DIVISION_B
 from robobt.world.game import Team
@@ -205,6 +205,11 @@ def test_a_robot_not_seen_enough_is_expected_to_be_as_late_as_the_others() -> No
     assert watch.of(ROBOTS[0]) is not None
     assert watch.of(ROBOTS[5]) is None
     assert watch.expected(ROBOTS[5]) == pytest.approx(0.08 + 0.03, abs=0.005)
+
+
+def test_no_delay_may_be_below_nothing() -> None:
+    assert MeasuredDelay(0.001, 0.002).low == 0.0
+    assert MeasuredDelay(0.05, 0.002).low == pytest.approx(0.05 - 1.96 * 0.002)
 
 
 def test_a_seed_fixes_what_is_measured() -> None:
