@@ -13,7 +13,8 @@ from websockets.asyncio.server import ServerConnection
 from websockets.exceptions import ConnectionClosed
 from websockets.frames import CloseCode
 
-from robobt.live.messages import MOST_REFUSED, RATE, Act, Layers, Past, Rest, Steer, problem_with, read
+from robobt.live.messages import MOST_REFUSED, RATE, Act, Layers, Past, Rest, Steer, read
+from robobt.live.refusals import problem_with
 from robobt.live.stream import Stream
 from robobt.live.viewer import Viewer
 

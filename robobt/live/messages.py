@@ -6,7 +6,6 @@ from typing import Annotated, Literal, get_args
 
 from pydantic import Field, JsonValue, TypeAdapter, ValidationError
 
-from robobt.config.errors import one_line
 from robobt.config.validation import Settings
 from robobt.live.driving import Frames
 from robobt.match.referee.by_hand import Order
@@ -224,7 +223,8 @@ Act = (
 
 Message = Act | Steer | Past | Layers
 
-_READER: TypeAdapter[Message] = TypeAdapter(Annotated[Message, Field(discriminator="do")])
+READER: TypeAdapter[Message] = TypeAdapter(Annotated[Message, Field(discriminator="do")])
+"""Reads and checks a message."""
 
 
 def read(data: str | bytes) -> Message | None:
@@ -232,7 +232,7 @@ def read(data: str | bytes) -> Message | None:
     if len(data) > MOST_MESSAGE_BYTES:
         return None
     try:
-        return _READER.validate_json(data)
+        return READER.validate_json(data)
     except ValidationError:
         return None
 
@@ -241,23 +241,6 @@ FORMS: dict[str, type[Settings]] = {
     get_args(form.model_fields["do"].annotation)[0]: form for form in get_args(Message)
 }
 """The forms of messages by what they do."""
-
-
-def problem_with(data: str | bytes) -> str:
-    """Return what is wrong with a message that :func:`read` does not return, for whoever sent it."""
-    if len(data) > MOST_MESSAGE_BYTES:
-        return f"A message has at most {MOST_MESSAGE_BYTES} bytes."
-    try:
-        _READER.validate_json(data)
-    except ValidationError as error:
-        first = error.errors(include_url=False, include_context=False, include_input=False)[0]
-        asked = next(iter(first["loc"]), "")
-        if asked in FORMS:
-            fields = [name for name in FORMS[str(asked)].model_fields if name != "do"]
-            place = one_line(".".join(map(str, first["loc"][1:])), 40)
-            takes = ", ".join(fields) or "nothing"
-            return f"{asked}: {place}: {one_line(first['msg'], 100)}. The message takes: {takes}."
-    return f'A message is a JSON object whose "do" is one of: {", ".join(FORMS)}.'
 
 
 class Allowance:
