@@ -61,6 +61,8 @@ class Live:
         self._due = 0.0
         self._reset: Reset | None = None
         self._ended = self._paced = False
+        # The packed frame of the world since when it stands and viewers may move things in it.
+        self._before: bytes | None = None
         self._capture: Capture | None = None
         self._stream: Stream | None = None
         self._hands: Hands | None = None
@@ -133,6 +135,7 @@ class Live:
         gc.freeze()
         self._hands = hands = Hands(match, self._server, self._clock)
         self._show(match)
+        self._before = None
         self._stand(match)
         self._reset = None
         self._attentive, self._paced = True, match.world.paced
@@ -155,6 +158,7 @@ class Live:
         if not match.tick():
             self._controls.tell(over=match.outcome and match.outcome.value)
             return False
+        self._before = None
         self._until_delays -= 1
         if self._until_delays <= 0:
             self._until_delays = _TICKS_TO_DELAYS
@@ -237,7 +241,7 @@ class Live:
     def _stand(self, match: MatchLoop) -> None:
         """Show where things are until the next tick."""
         assert self._stream is not None
-        self._stream.stand(match.world.truth().packed())
+        self._stream.stand(match.world.truth().packed(), self._before)
 
     def _draw(self) -> None:
         """Let skills draw the layers that viewers watch."""
@@ -262,10 +266,13 @@ class Live:
             case Reset():
                 self._reset = act
             case _ if self._hands is not None:
+                stands = self._controls.paused or match.outcome is not None
+                if stands and self._before is None:
+                    self._before = match.world.truth().packed()
                 self._hands.do(act, self._clock(), arrived)
                 # Another tree may have begun another capture.
                 self._show(match, self._stream)
-                if self._controls.paused or match.outcome is not None:
+                if stands:
                     self._stand(match)
 
     def _pace(self) -> None:

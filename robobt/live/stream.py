@@ -22,6 +22,7 @@ from pydantic import JsonValue
 
 from robobt.live.page_data import ChunkEncoder, header_data
 from robobt.live.present import Present
+from robobt.live.standing import standing
 from robobt.match.recording import Recording, RecordingHeader, RobotFlag
 from robobt.match.recording.capture import Capture, CapturedTick
 from robobt.match.recording.encoder import EncodedTicks, TickEncoder
@@ -85,7 +86,7 @@ class Stream:
         header: the constant part, as sent to the page.
         first: number of the oldest message that is kept.
         end: number of the next message.
-        moves: number of times that :meth:`stand` has changed the present since the last tick.
+        moves: number of times that :meth:`stand` has changed the present.
     """
 
     def __init__(self, source: Capture | RecordingHeader, after: Stream | None = None) -> None:
@@ -103,6 +104,7 @@ class Stream:
         self._numbers = TickNumbers([robot.id for robot in self._header.robots])
         # Where things stand before the next tick: as the match told it, and encoded.
         self._told: bytes | None = None
+        self._newest: bytes | None = None if after is None else after._newest
         self._standing: pa.Array | None = None if after is None else after._standing
         if after is not None:
             self._present.follow(after._present.lasting)
@@ -118,16 +120,23 @@ class Stream:
 
     def take(self, tick: CapturedTick) -> None:
         """Take the next tick; called by the match."""
-        self._told = None
+        self._told, self._newest = None, tick.truth
         self._waiting.append((time.time(), tick))
 
-    def stand(self, truth: bytes) -> None:
+    def stand(self, truth: bytes, before: bytes | None = None) -> None:
         """Show where things are until the next tick, which is no tick itself; called by the match.
 
         Args:
             truth: the true frame, packed from blue's side.
+            before: the one before anything was moved; what has not moved since is shown as at the last tick.
         """
-        self._told = truth
+        shown = self._newest
+        self._told = truth if before is None or shown is None else standing(shown, before, truth)
+
+    @property
+    def stands(self) -> bool:
+        """Whether the present is where things stand before the next tick, not the newest tick."""
+        return self._standing is not None
 
     def add(self, ticks: EncodedTicks) -> None:
         """Add ticks that are already encoded."""
@@ -143,7 +152,7 @@ class Stream:
         found = self._next()
         if found is None:
             return self._stand()
-        self._standing, self.moves = None, 0
+        self._standing = None
         at, ticks = found
         self._gap, self._came = (at - self._came) / len(ticks.times), at
         self._present.follow(ticks.changes[0])

@@ -70,7 +70,7 @@ class Viewer:
             await self._json({"kind": "state", **state})
         if self._next < stream.end:
             await self._send_new(stream)
-        elif self._moves != stream.moves:
+        if self._next == stream.end and stream.stands and self._moves != stream.moves:
             await self._send_present(stream)
         if self._past < self._past_end:
             found, self._past = stream.messages(self._past, _PAST_AT_ONCE)

@@ -140,6 +140,23 @@ def test_a_match_that_waits_shows_its_start_and_what_is_moved() -> None:
         assert saved.truth.ball[0, :2] == pytest.approx((-1.25, 0.5), abs=0.001)
 
 
+def test_what_is_moved_in_a_pause_moves_nothing_else() -> None:
+    with playing("striker_vs_goalkeeper", paused=True) as session, Client(session.server.url) as client:
+        client.ask(do="step", ticks=30)
+        stream = session.server.audience.stream
+        assert stream is not None
+        end = 29 * session.match.scenario.period
+        client.read(lambda it: it.chunks and numbers(it.chunks[-1]["times"], "<f4")[-1] > end - 1e-3)
+        shown = places_of(client)
+        # The last tick has led the robots on, which the next one will show.
+        assert shown != true_places(session.match)
+        client.ask(do="ball", x=-1.25, y=0.5)
+        client.read(lambda it: ball_of(it) == pytest.approx((-1.25, 0.5), abs=0.001))
+        assert places_of(client) == shown
+        client.ask(do="robot", robot="blue 0", x=1.0, y=-1.0, heading=0.0)
+        client.read(lambda it: places_of(it) == [[1000, -1000], shown[1]])
+
+
 def test_a_message_that_is_none_is_answered() -> None:
     with playing("striker_vs_goalkeeper", paused=True) as session, Client(session.server.url) as client:
         client.read(lambda it: it.state.get("steers"))
@@ -155,6 +172,21 @@ def ball_of(client: Client) -> tuple[float, float]:
     """Where the newest frame of a page has the ball [m]."""
     x, y = np.frombuffer(base64.b64decode(client.chunks[-1]["ball"]), "<i2")[-4:-2] / 1000.0
     return float(x), float(y)
+
+
+def places_of(client: Client) -> list[list[int]]:
+    """Where the newest frame of a page has the robots [mm]."""
+    return [numbers(it["rows"], "<i2")[-4:-2].tolist() for it in client.chunks[-1]["robots"]]
+
+
+def numbers(text: str, kind: str) -> np.ndarray:
+    return np.frombuffer(base64.b64decode(text), kind)
+
+
+def true_places(match: MatchLoop) -> list[list[int]]:
+    """Where the robots of a match are before its next tick [mm]."""
+    robots = sorted(match.world.truth().robots().items())
+    return [[round(1000.0 * it.x), round(1000.0 * it.y)] for _, it in robots]
 
 
 @pytest.mark.slow
