@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from math import acos, cos, pi, sin
 from typing import NamedTuple
 
@@ -24,6 +24,9 @@ BEYOND = 0.5
 
 SLOP = 1e-4
 """Overlap that is not corrected [m]; Chipmunk's default is made for pixels."""
+
+_PLACED_OVERLAP, _PLACED_GAP = 1e-4, 2e-4
+"""Overlap with a front that a placed ball may have, and its gap to the front where it has more [m]."""
 
 _HULL_CORNERS = 24
 _PLATE = 0.006
@@ -48,6 +51,30 @@ class Outline(NamedTuple):
     corners: list[tuple[float, float]]
     rounding: float
     material: tuple[float, float]
+
+
+def before_fronts(
+    ball: Sequence[float], robots: Iterable[Sequence[float]], body: BodySettings
+) -> list[float]:
+    """Return a ball to be placed, moved out of the mouths whose fronts it would lie in.
+
+    Inside a front it would be pushed off, faster than a late robot's dribbler takes it.
+
+    Args:
+        ball: x, y and further numbers [m].
+        robots: x, y, heading and further numbers of each [m, rad].
+        body: the robots'.
+    """
+    place = list(ball)
+    touching = body.face + BALL_RADIUS
+    for x, y, heading, *_ in robots:
+        dx, dy, c, s = place[0] - x, place[1] - y, cos(heading), sin(heading)
+        ahead, aside = c * dx + s * dy, c * dy - s * dx
+        if 0.0 < ahead < touching - _PLACED_OVERLAP and abs(aside) <= body.mouth_width / 2:
+            out = touching + _PLACED_GAP - ahead
+            place[0] += c * out
+            place[1] += s * out
+    return place
 
 
 def walls_of(field: FieldGeometry) -> list[tuple[Box, str]]:

@@ -8,6 +8,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from robobt.sim.arenas import Arenas
+from robobt.sim.bodies import before_fronts
 from robobt.sim.records import COMMAND, size
 from robobt.sim.settings import SimSettings
 from robobt.sim.sight import Sight
@@ -77,7 +78,10 @@ class SimWorld(World):
         return self._ticks * self.period
 
     def reset(self, placement: Placement, seed: int) -> None:
-        """See :meth:`robobt.world.World.reset`; every robot needs a pose."""
+        """See :meth:`robobt.world.World.reset`; every robot needs a pose.
+
+        A ball placed inside a robot's mouth starts before its front.
+        """
         check_placement(placement, self.field, self._ids)
         still = (0.0, 0.0)
         poses = np.array(
@@ -87,7 +91,8 @@ class SimWorld(World):
         # A new space: the old one remembers the contacts of its last steps and would act on them.
         self._arenas = self._make_arenas()
         self._arenas.seed((seed,))
-        self._arenas.place(poses[None], np.array([placement.ball]))
+        ball = before_fronts(placement.ball, poses.tolist(), self.settings.body)
+        self._arenas.place(poses[None], np.array([ball]))
         self._commands[:] = 0.0
         self._rng = np.random.default_rng(seed)
         self._ticks = 0

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import inf
+from math import cos, inf, sin
 
 import numpy as np
 import pytest
@@ -31,6 +31,26 @@ def test_it_starts_as_placed() -> None:
     assert frame.opponents[0].position == (1, -0.2)
     assert (frame.ball.x, frame.ball.vx) == (0.1, 1)
     assert frame.last_touch is None
+
+
+@pytest.mark.parametrize("name", sorted(set(PRESETS) - {"erforce"}))
+def test_a_late_robot_keeps_the_ball_that_it_starts_with(name: str) -> None:
+    """Placed inside a robot, as 98 mm are in front of grSim's, the ball would be pushed away meanwhile."""
+    settings = preset(name)
+    settings = settings.model_copy(update={"limits": settings.limits.model_copy(update={"dead_time": 0.1})})
+    world = SimWorld(DIVISION_B, {ME: None}, settings, 1 / 60)
+    x, y = 0.098 * cos(0.7), 0.098 * sin(0.7)
+    world.reset(Placement({ME: (0.0, 0.0, 0.7)}, (x, y, 0.0, 0.0)), seed=1)
+    for _ in range(20):
+        world.act({ME: RobotCommand(dribbler=True)})
+        assert world.truth().own[0].ball_contact
+
+
+def test_a_ball_that_touches_no_robot_starts_where_it_was_placed() -> None:
+    world = SimWorld(DIVISION_B, {ME: None}, preset("grsim"), 1 / 60)
+    for ball in ((0.1021, 0.0), (0.07, 0.08), (-0.13, 0.0)):
+        world.reset(Placement({ME: (0.0, 0.0, 0.0)}, (*ball, 0.0, 0.0)), seed=1)
+        assert world.truth().ball.position == ball
 
 
 @pytest.mark.parametrize("name", sorted(PRESETS))
