@@ -24,6 +24,7 @@ from robobt.learning.envs import (
 from robobt.learning.envs.make import task_file
 from robobt.learning.envs.soccer.task import SoccerTask
 from robobt.learning.training.settings import SettingsError, load_settings
+from robobt.plays import python_files
 from robobt.plays.sources import PythonFileError
 from robobt.world.observation import OWN_OBSERVATIONS
 from tests.registries import temporarily
@@ -66,7 +67,9 @@ class Middle(ArenaTask):
 
 
 @pytest.fixture(autouse=True)
-def _registered_for_a_test() -> Iterator[None]:
+def _registered_for_a_test(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+    # Else the workers of later tests would import the files of all of these tests.
+    monkeypatch.setattr(python_files, "_imported", {})
     with temporarily(TASKS):
         yield
     OWN_OBSERVATIONS.clear()
