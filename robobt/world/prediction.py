@@ -198,7 +198,7 @@ class PredictedWorld(WrappedWorld):
                 state,
                 after[robot],
                 seen,
-                self._now + self._delay(robot, state.limits),
+                self._now + self._delay(robot, state.limits) - state.limits.reaction,
                 self._orders(robot, state.limits),
             )
             for robot, state in before.items()

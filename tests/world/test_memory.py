@@ -34,10 +34,9 @@ def test_the_latest_comes_first_and_a_beginning_forgets() -> None:
 
 
 def test_a_task_shows_what_it_showed_and_what_was_done() -> None:
-    settings = {"memory": {"actions": 2, "observations": 1}, "time_limit": 4}
-    plain, with_it = (
-        make_task(ShootSettings.model_validate(given), 3) for given in ({"time_limit": 4}, settings)
-    )
+    given = {"time_limit": 4, "gentle": True}
+    settings = given | {"memory": {"actions": 2, "observations": 1}}
+    plain, with_it = (make_task(ShootSettings.model_validate(one), 3) for one in (given, settings))
     seen, recalled = plain.reset(seed=4), with_it.reset(seed=4)
     n, rng = SHOOT.size, np.random.default_rng(0)
     assert recalled[:, :n].tolist() == seen.tolist()
@@ -60,6 +59,8 @@ def test_a_task_shows_what_it_showed_and_what_was_done() -> None:
 
 
 def test_its_space_and_scale_fit_it() -> None:
-    task = make_task(ShootSettings.model_validate({"memory": {"actions": 3, "observations": 2}}), 1)
+    task = make_task(
+        ShootSettings.model_validate({"memory": {"actions": 3, "observations": 2}, "gentle": True}), 1
+    )
     assert task.space.shape == (task.observation_size,) == (len(task.scale),)
     assert task.space.contains(task.reset(seed=0)[0].astype(np.float32))
