@@ -152,7 +152,7 @@ def test_a_ball_that_two_robots_hold_goes_between_them(command: RobotCommand) ->
     late = RealismSettings(vision_delay=0.035)
     sim = SimWorld(DIVISION_B, {BLUE: None, YELLOW: None}, preset("grsim", realism=late), PERIOD)
     made = PredictedWorld(sim, late.vision_delay)
-    start = {BLUE: (-0.1015, 0.0, 0.0), YELLOW: (0.1015, 0.0, math.pi)}
+    start = {BLUE: (-0.1021, 0.0, 0.0), YELLOW: (0.1021, 0.0, math.pi)}
     made.reset(Placement(start, (0.0, 0.0, 0.0, 0.0)), 1)
     for _ in range(9):
         shown, real = made.observe(), made.truth()
