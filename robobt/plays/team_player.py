@@ -53,6 +53,10 @@ SURE = 0.5
 """Least chance that a pass from a restart arrives; the ball is safe before it."""
 
 
+WEAKEST = 0.5
+"""Share of the dribbler in training with which the team's learned attack still plays."""
+
+
 @PLAYS.register("team_player")
 def team_player(
     *,
@@ -78,7 +82,8 @@ def team_player(
         patience: time in which both thresholds fall to their floor [s].
         chips: whether passes may fly over opponents.
         score: name or file of a model for Score, which plays in the opponents' half while the robot has the
-            ball and neither shot nor pass is good enough; ``without="score"`` for none.
+            ball and neither shot nor pass is good enough, and its dribbler is at least half as strong as in
+            training; ``without="score"`` for none.
         go: name or file of a model for driving to places among moving robots
             (:class:`~robobt.skills.go_to_pose.GoToPose`); empty for the planner alone.
         open_play: name or file of a model for a task with several robots, which plays while the ball is in
@@ -131,7 +136,9 @@ def attack(choose: Callable[[], ChooseKick], without: Omitted = "nothing", score
         "receive": ReceivePass(),
         "settle": SettleBall(),
         "kick": when("kick", choose(), kick()),
-        "score": when("score", HasBall(), Inverter("ahead", BallInOwnHalf()), Score(policy=score)),
+        "score": when(
+            "score", HasBall(), Inverter("ahead", BallInOwnHalf()), Score(policy=score, weakest=WEAKEST)
+        ),
         "draw": when(
             "draw", HasBall(), ShotIsOpen(rater="open_angle", max_distance=4.0), DrawGoalkeeper(patience=1.5)
         ),

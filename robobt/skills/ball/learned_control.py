@@ -219,6 +219,9 @@ class PacedControl:
         skill: as for :class:`LearnedControl`.
         observation: as for :class:`LearnedControl`.
 
+    Attributes:
+        card: the model's own description.
+
     Raises:
         ModelError: the model cannot be used.
     """
@@ -227,6 +230,7 @@ class PacedControl:
         self, model: str | Path, skill: str | None = None, observation: ObservationSpec | None = None
     ) -> None:
         self._control = LearnedControl(model, skill, observation)
+        self.card = self._control.card
         self._decided = -inf
         self._command = RobotCommand()
 

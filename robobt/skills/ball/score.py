@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from robobt.skills.ball.policy_skill import PolicySkill
 from robobt.skills.base import skill
+from robobt.tree import Status
 
 
 @skill
@@ -17,12 +18,34 @@ class Score(PolicySkill):
     are more. It decides as often as in training. If the policy's answer is not a valid action, the skill
     fails and the robot stops.
 
+    A policy carries the ball as its robot in training could. A robot whose dribbler is much weaker loses it,
+    and hand-written skills then score more often; with ``weakest`` the leaf leaves the ball to them.
+
     Args:
         policy: name or file of a model for Score (``robobt train score_on_goalkeeper`` or
             ``score_on_goalkeeper_and_defenders``); without one the leaf fails.
+        weakest: the leaf fails on a robot whose dribbler holds less than this share of what the dribbler in
+            training held (``limits.hold_acceleration``), 0 to 1.
 
     Raises:
         ModelError: the model cannot be used; the message names the file and the reason.
+        ValueError: ``weakest`` is not 0 to 1.
     """
 
     doing = "attacking"
+
+    weakest: float = 0.0
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if not 0.0 <= self.weakest <= 1.0:
+            raise ValueError(f"weakest must be 0 to 1, not {self.weakest}")
+        trained = None if self._control is None else self._control.card.limits
+        self._least = 0.0 if trained is None else self.weakest * trained.hold_acceleration
+
+    def on_running(self) -> Status:
+        """Decide, or repeat the last decision, for one tick."""
+        held = self.me.limits.hold_acceleration
+        if held < self._least:
+            return self.fail(f"its dribbler holds {held:g} m/s^2, less than the policy's {self._least:g}")
+        return super().on_running()

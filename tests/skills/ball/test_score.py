@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -13,7 +14,7 @@ from robobt.skills import Score
 from robobt.skills.ball import learned_control
 from robobt.testing import frame, robot
 from robobt.tree import Status
-from robobt.world import DIVISION_B, BallState, Frame, GameState, RobotCommand, RobotState
+from robobt.world import DIVISION_B, BallState, Frame, GameState, RobotCommand, RobotLimits, RobotState
 from robobt.world.game import Team, TeamStatus
 from robobt.world.scoring import SCORE_ON_GOALKEEPER, score_on_goalkeeper_of
 from tests.models.made_models import Faulty, Passing, go_to_ball_card, score_card, write_model
@@ -41,6 +42,21 @@ def test_a_wrong_answer_fails_it_and_stops_the_robot(tmp_path: Path) -> None:
     alone = Alone(Score(policy=str(model)))
     assert alone.tick(frame(robot(), ball=(3.0, 0.0))) is Status.FAILURE
     assert alone.command == RobotCommand()
+
+
+@pytest.mark.parametrize(("held", "status"), [(1.4, Status.FAILURE), (1.6, Status.RUNNING)])
+def test_it_leaves_the_ball_of_a_weak_dribbler_to_others(tmp_path: Path, held: float, status: Status) -> None:
+    limits = RobotLimits(hold_acceleration=3.0)
+    model = write_model(tmp_path, Passing(), score_card().model_copy(update={"limits": limits}))
+    alone = Alone(Score(policy=str(model), weakest=0.5))
+    me = replace(robot(2.0, 0.0), limits=RobotLimits(hold_acceleration=held))
+    assert alone.tick(frame(me, ball=(2.1, 0.0), opponents=(robot(4.3, 0.4, number=3),))) is status
+
+
+@pytest.mark.parametrize("weakest", [-0.1, 1.1])
+def test_the_weakest_dribbler_is_a_share(weakest: float) -> None:
+    with pytest.raises(ValueError, match="weakest must be 0 to 1"):
+        Score(weakest=weakest)
 
 
 def test_it_decides_as_often_as_in_training(tmp_path: Path) -> None:
