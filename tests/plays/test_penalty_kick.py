@@ -15,7 +15,7 @@ pytestmark = pytest.mark.integration
 def shoot_out() -> tuple[MatchResult, list[str]]:
     """The first kick of each team."""
     happened: list[str] = []
-    with MatchLoop(load_scenario("shoot_out").lasting(23.0), 1, sim_world) as match:
+    with MatchLoop(load_scenario("shoot_out").lasting(23.0), 2, sim_world) as match:
         update = match.referee.update  # type: ignore[union-attr]
 
         def told(frame):  # type: ignore[no-untyped-def]
