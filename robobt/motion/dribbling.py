@@ -71,6 +71,11 @@ def carrying_limits(
     return dribbling_limits(max_speed, min(max_turn, sqrt(held / TOUCH_DISTANCE)), max_acceleration, held)
 
 
+def carrying_share(own: RobotLimits) -> float:
+    """Return the share of :data:`MAX_ACCELERATION` at which a robot's dribbler holds the ball, 0 to 1."""
+    return min(1.0, own.hold_acceleration / MAX_ACCELERATION)
+
+
 def settle(me: RobotState, period: float) -> RobotCommand:
     """Come to rest with the ball."""
     limits = dribbling_limits(max_acceleration=min(MAX_ACCELERATION, me.limits.hold_acceleration))

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from math import cos, inf
 
+from robobt.motion.dribbling import carrying_share
 from robobt.skills.base import Skill, skill
 from robobt.tree import Status
 from robobt.world.command import KickTrigger
@@ -50,7 +51,7 @@ class KickLoose(Skill):
     ``patience``, or twice that if the robot faces its own goal.
 
     Args:
-        patience: how long the robot first tries to drive away with the ball [s].
+        patience: how long the robot first tries to drive away with the ball [s]; less with a weak dribbler.
 
     Raises:
         ValueError: ``patience`` is not positive.
@@ -69,7 +70,8 @@ class KickLoose(Skill):
         frame, me, ball, now = self.frame, self.me, self.ball, self.frame.time
         if not has_ball(me, ball) or not any(has_ball(other, ball) for other in frame.opponents):
             return self.fail("no opponent holds the ball too")
-        if not has_lasted(self._hold, now, me.heading, self.patience):
+        patience = self.patience * carrying_share(me.limits)
+        if not has_lasted(self._hold, now, me.heading, patience):
             return self.fail("it may get away with the ball yet")
         command = self.store.command
         command.vx, command.kick_speed, command.kick_trigger = (

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import field, replace
 from math import hypot
 
+from robobt.motion.dribbling import carrying_share
 from robobt.skills.aim.goalkeeper_watch import GoalkeeperWatch
 from robobt.skills.aim.raters.expected_goal import ExpectedGoal
 from robobt.skills.base import Skill, skill
@@ -30,7 +31,7 @@ class ChooseKick(Skill):
     Args:
         shoot_at: chance of a goal from which a shot is taken at once, 0 to 1.
         pass_at: value from which a pass is played at once, 0 to 1.
-        patience: time in which both thresholds fall to their floor [s].
+        patience: time in which both thresholds fall to their floor [s]; less with a weak dribbler.
         floor: share of both thresholds that remains.
         keep: factor on the value of the last choice.
         least: least chance that a pass arrives, 0 to 1.
@@ -120,7 +121,9 @@ class ChooseKick(Skill):
         frame, me, ball, team = self.frame, self.me, self.ball, self.store.team
         old_pass, plan, tactics = self._pass, team.plan, team.plan.tactics
         self._shot = self._pass = None
-        share = max(self.floor, 1.0 - (frame.time - self._since) / self.patience)
+        # A robot that can neither carry the ball nor turn with it gains nothing by waiting.
+        patience = self.patience * carrying_share(me.limits)
+        share = max(self.floor, 1.0 - (frame.time - self._since) / patience)
         pressed = has and any(hypot(r.x - ball.x, r.y - ball.y) < tactics.pressed for r in frame.opponents)
         if pressed:
             share = min(share, 2.0 * self.floor)
