@@ -7,8 +7,9 @@ is imported by the command that needs it, so that ``robobt --help`` is quick.
 from __future__ import annotations
 
 import gc
+import os
 import sys
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from importlib import import_module
 from io import TextIOWrapper
 from typing import Annotated
@@ -35,6 +36,7 @@ from robobt.cli.option_groups.page import Page as Page
 from robobt.cli.option_groups.spread import spread
 from robobt.cli.options import option
 from robobt.cli.outputs import make_folders as make_folders
+from robobt.config.compiling import compile_nothing
 from robobt.config.telling import tell_warnings
 from robobt.signals import leave_after_signal
 
@@ -163,7 +165,15 @@ def main() -> None:
     if (became := what_became(sys.argv[1:])) is not None:
         errors.print(escape(became), soft_wrap=True)
         raise SystemExit(2)
+    if _only_names(sys.argv[1:]):
+        compile_nothing()
     run(application, "robobt")
+
+
+def _only_names(words: Sequence[str]) -> bool:
+    """Return whether a command line only asks what there is, and runs no code of the user's own."""
+    completes = any(name in os.environ for name in ("_ROBOBT_COMPLETE", "_TYPER_COMPLETE_ARGS"))
+    return completes or ([*words, ""][0] == "list" and not any(word.startswith("--import") for word in words))
 
 
 def run(make: Callable[[str | None], typer.Typer], name: str) -> None:

@@ -1,33 +1,23 @@
-"""Compiling with numba: the decorator, and settings that compiled code can read."""
+"""Compiling with numba: the decorators, and settings that compiled code can read.
+
+numba itself is imported by the first function that is decorated, and by none where nothing is compiled
+(:mod:`robobt.config.compiling`).
+"""
 
 from __future__ import annotations
 
-import logging
-import multiprocessing
-import os
-import sys
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from functools import cache
 from math import inf
 from typing import Annotated, Any, TypeVar, cast, get_args, get_origin, get_type_hints
 
 import numpy as np
-from numba import njit
-from numba.core.event import Event, TimingListener, install_listener, register
-from numba.extending import register_jitable
 from numpy.typing import NDArray
 from pydantic import BaseModel
 
-from robobt.world.compiled_key import COMPILING, DeepCache
+from robobt.config.compiling import compiles
 
-_log = logging.getLogger(__name__)
-
-_COMPILING_VARIABLE = "ROBOBT_COMPILING_TOLD"
-"""Set in the environment, which workers inherit."""
-
-_REPORTED_COMPILE_TIME = 2.0
-"""Compilation time after which a message is printed [s]."""
 FloatArray = NDArray[np.float64]
 Function = TypeVar("Function", bound=Callable[..., object])
 
@@ -57,52 +47,31 @@ def compiled_inline(function: Function) -> Function:
 
 
 def _compiled(function: Function, **options: Any) -> Function:
-    made = njit(**options)(function)
-    # A read-only installation, run by a user without a home folder, has no cache and compiles each time.
-    with suppress(RuntimeError):
-        made._cache = DeepCache(function)
-    return cast(Function, made)
+    if not compiles():
+        return function
+    from robobt.world.compiler import compile_function
+
+    return compile_function(function, **options)
 
 
 @contextmanager
 def timing_compilation() -> Iterator[Callable[[], float]]:
     """Yield a function that returns numba's compilation time since then [s], without loading from cache."""
+    from numba.core.event import TimingListener, install_listener
+
+    from robobt.world.compiled_key import COMPILING
+
     listener = TimingListener()  # type: ignore[no-untyped-call]
     with install_listener(COMPILING, listener):
         yield lambda: float(listener.duration) if listener.done else 0.0
 
 
-class CompilingTold(TimingListener):
-    """Prints once, on a terminal, that a run waits for the compiler; short waits are not reported."""
-
-    def __init__(self, patience: float = _REPORTED_COMPILE_TIME) -> None:
-        super().__init__()  # type: ignore[no-untyped-call]
-        self._patience = patience
-        # The first worker prints for all, unless the process that started it has done so.
-        name = multiprocessing.current_process().name
-        worker = multiprocessing.parent_process() is not None
-        self._told = worker and (_COMPILING_VARIABLE in os.environ or not name.endswith("-1"))
-
-    def on_start(self, event: Event) -> None:
-        """Note that a function is being compiled, and how long those before it took."""
-        super().on_start(event)  # type: ignore[no-untyped-call]
-        if self._told or not self.done or self.duration < self._patience or not sys.stderr.isatty():
-            return
-        self._told = True
-        os.environ[_COMPILING_VARIABLE] = "1"
-        _log.warning(
-            "compiling for this machine, as on the first run after an installation or an update: "
-            "a minute or more, once; later runs load what was compiled"
-        )
-
-
-TOLD = CompilingTold()
-# Code that was kept and is only loaded does not count as compiled.
-register(COMPILING, TOLD)  # type: ignore[no-untyped-call]
-
-
 def compilable(function: Function) -> Function:
     """Leave a function as it is for Python, which calls it faster so, and let compiled code call it too."""
+    if not compiles():
+        return function
+    from robobt.world.compiler import register_jitable
+
     return register_jitable(function)
 
 

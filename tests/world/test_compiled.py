@@ -16,15 +16,29 @@ from numba.core.event import install_listener, register, unregister
 from pydantic import BaseModel
 
 import robobt
+from robobt.config import compiling as config_compiling
+from robobt.config.compiling import compile_nothing
 from robobt.world.compiled import (
-    TOLD,
-    CompilingTold,
+    compilable,
     compiled,
+    compiled_inline,
     compiled_lean,
     numbers_dtype,
     numbers_of,
     timing_compilation,
 )
+from robobt.world.compiler import TOLD, CompilingTold
+
+
+def test_where_nothing_is_compiled_functions_stay_as_they_are(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(config_compiling, "_compiling", True)
+    compile_nothing()
+
+    def double(x: float) -> float:
+        return 2.0 * x
+
+    for decorator in (compiled, compiled_lean, compiled_inline, compilable):
+        assert decorator(double) is double
 
 
 def test_code_that_cannot_be_kept_is_compiled_all_the_same() -> None:
@@ -122,7 +136,7 @@ def test_a_run_that_waits_for_the_compiler_is_told_so_once_on_a_terminal(
     with install_listener("numba:compile", CompilingTold(0.0)):
         for function in functions:
             function(1.0)
-    assert [record.name for record in caplog.records] == ["robobt.world.compiled"] * lines
+    assert [record.name for record in caplog.records] == ["robobt.world.compiler"] * lines
 
 
 @pytest.mark.usefixtures("_by_no_other")
