@@ -11,7 +11,7 @@ import torch
 import typer
 
 from benchmarks.tree import medians, print_figures
-from robobt.cli import Json
+from robobt.cli import Json, say
 from robobt.cli.common import errors
 from robobt.models import load_policy
 from robobt.models.policy import bare_module
@@ -90,10 +90,15 @@ def policy(
     Keys of --json: leaf_to_module_ratio (a whole tick of LearnedSkill, from the
     frame to the command, over a call of the module on a tensor),
     skill_to_module_ratio (that ratio for the model's own skill) and the microseconds that they come from. CPU
-    time, medians.
+    time, medians; the cases take turns, after a round that does not count.
     """
 
     torch.set_num_threads(1)
     with errors.status("measuring policies"):
         figures = bench_policy(model)
     print_figures(figures, as_json)
+    if not as_json:
+        say(
+            "Compared: CPU time of a tick, in which the leaf asks its network, beside a call of the network "
+            "alone, in turn; medians, after a warm-up of one round."
+        )

@@ -13,6 +13,7 @@ from typer.testing import CliRunner
 from benchmarks import tree
 from benchmarks.__main__ import COMMANDS, SCRIPTS, application
 from robobt.config.yaml import write_yaml
+from robobt.tree import TreeRunner
 from tests.cli.test_train import OPTIONS
 from tests.match.scripted import data
 
@@ -57,20 +58,39 @@ def test_the_simulator_is_measured() -> None:
         assert case in explained
         assert all(key in explained for key in figures)
         assert figures["steps_per_s"] > 0
+        # A step with frames is never cheaper than the bare one beside it, and things meet.
+        assert figures["bare_ratio"] > 1.0
+        assert figures["pairs"] >= 1
+        assert figures["contacts_per_s"] > 0.0
+    assert "Compared: CPU time of 200 control steps with frames" in run("sim", "--seconds", "0.1").stdout
 
 
 @pytest.mark.integration
-def test_a_match_is_measured(tmp_path: Path) -> None:
+def test_a_match_is_measured(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     scenario = tmp_path / "mine.yaml"
     scenario.write_text(write_yaml(data(ball={"position": {"center": [0, 0], "radius": 0.5}})))
+    stock: list[TreeRunner[Any]] = []
+    by_py_trees = TreeRunner.tick_by_py_trees
+
+    def tick_by_py_trees(runner: TreeRunner[Any]) -> None:
+        stock.append(runner)
+        by_py_trees(runner)
+
+    monkeypatch.setattr(TreeRunner, "tick_by_py_trees", tick_by_py_trees)
     printed = told("match", str(scenario), "--seconds", "1")
+    # Of the four matches, one is ticked by py_trees.
+    assert len(stock) == printed["robots"]
     explained = help_of("match")
     assert all(key in explained for key in printed)
     assert printed["real_time_factor"] == pytest.approx(printed["simulated_s"] / printed["cpu_s"])
     assert printed["real_time_factor_py_trees"] > 0
     assert printed["recording_share"] < 1
     assert 0 <= printed["referee_share"] < 1
-    assert "times real time" in run("match", scenario, "--seconds", "1").stdout
+    assert printed["speedup_vs_py_trees"] > 0
+    assert printed["turns"] >= 1
+    text = run("match", scenario, "--seconds", "1").stdout
+    assert "times real time" in text
+    assert "Compared: processor time of the same match" in text
 
 
 @pytest.mark.integration
