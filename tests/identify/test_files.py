@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import re
 import shlex
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -12,7 +13,7 @@ import pytest
 from typer.testing import CliRunner
 
 from robobt.cli import app
-from robobt.identify import identify, write_preset
+from robobt.identify import Identification, Observations, identify, report, write_preset
 from robobt.identify.estimate import unseen
 from robobt.identify.observations import without_repeats
 from robobt.identify.preset_file import preset_of
@@ -50,11 +51,25 @@ def recording(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return played(changed, tmp_path_factory.mktemp("identify") / "match.robobt.arrows")
 
 
-def test_a_recording_holds_what_was_seen_and_sent(recording: Path) -> None:
-    seen = load_observations(recording)
+@pytest.fixture(scope="module")
+def seen(recording: Path) -> Observations:
+    return load_observations(recording)
+
+
+@pytest.fixture(scope="module")
+def found(seen: Observations) -> tuple[Identification, int]:
+    """What is identified from the recording, and how many parts of the work were told as done."""
+    parts: list[int] = []
+    identified = identify(seen, lambda: parts.append(1))
+    return identified, len(parts)
+
+
+def test_a_recording_holds_what_was_seen_and_sent(
+    seen: Observations, found: tuple[Identification, int]
+) -> None:
     assert len(seen) > 400
     assert all(seen.commanded(robot) for robot in range(len(seen.robots)))
-    assert identify(seen).delay.value == pytest.approx(0.03, abs=0.003)
+    assert found[0].delay.value == pytest.approx(0.03, abs=0.003)
 
 
 def test_a_recording_without_detections_is_refused(recording: Path) -> None:
@@ -128,15 +143,23 @@ def test_what_was_not_seen_enough_goes_into_no_preset() -> None:
     assert settings_from(preset_of(found)).realism.robot_noise == 0.0
 
 
+@cache
+def late() -> Identification:
+    settings = SimSettings(realism=RealismSettings(vision_delay=0.03, command_delay=0.02))
+    return identify(driven(RobotLimits(dead_time=0.04), settings))
+
+
 @pytest.mark.parametrize("base", ["default", "erforce", "grsim", "real_2025"])
 def test_an_identified_delay_stands_in_place_of_all_that_the_base_has(base: str) -> None:
-    late = SimSettings(realism=RealismSettings(vision_delay=0.03, command_delay=0.02))
-    settings = settings_from(preset_of(identify(driven(RobotLimits(dead_time=0.04), late)), base))
+    settings = settings_from(preset_of(late(), base))
     whole = settings.realism.vision_delay + settings.limits.obeys_after(settings.realism.command_delay)
     assert whole == pytest.approx(0.09, abs=0.006)
 
 
-def test_what_the_base_alone_says_is_told(recording: Path, tmp_path: Path) -> None:
+def test_what_the_base_alone_says_is_told(
+    recording: Path, found: tuple[Identification, int], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(report, "identify", lambda *_: found[0])
     out = tmp_path / "field.yaml"
     arguments = ["record", "identify", str(recording), "--base", "erforce", "--out", str(out)]
     shown = CliRunner().invoke(app, arguments).stdout
@@ -150,7 +173,9 @@ def test_what_the_base_alone_says_is_told(recording: Path, tmp_path: Path) -> No
     assert "ball.stop_speed" not in taken
 
 
-def test_the_command_prints_figures_and_writes_the_file(recording: Path, tmp_path: Path) -> None:
+def test_the_command_prints_figures_and_writes_the_file(
+    recording: Path, found: tuple[Identification, int], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     out = tmp_path / "field.yaml"
     done = CliRunner().invoke(app, ["record", "identify", str(recording), "--out", str(out), "--json"])
     assert done.exit_code == 0, done.stderr
@@ -158,6 +183,8 @@ def test_the_command_prints_figures_and_writes_the_file(recording: Path, tmp_pat
     assert figures["delay"]["seen"]
     assert figures["ball.switch_share"].keys() == {"value", "low", "high", "count", "seen", "unit"}
     assert preset(str(out)).realism.robot_noise == pytest.approx(0.001, rel=0.1)
+    # The same again for the screen, without identifying it once more.
+    monkeypatch.setattr(report, "identify", lambda *_: found[0])
     shown = CliRunner().invoke(app, ["record", "identify", str(recording)]).stdout
     # The page, the file and the screen have one name for each figure, and one line on a usual screen.
     for name in figures:
@@ -168,14 +195,15 @@ def test_the_command_prints_figures_and_writes_the_file(recording: Path, tmp_pat
     assert max(map(len, shown.splitlines())) <= 80
 
 
-def test_every_figure_is_on_the_page_and_each_part_of_the_work_is_counted(recording: Path) -> None:
+def test_every_figure_is_on_the_page_and_each_part_of_the_work_is_counted(
+    seen: Observations, found: tuple[Identification, int]
+) -> None:
     page = (Path(__file__).parents[2] / "docs" / "identify.md").read_text(encoding="utf-8")
     named = {it.rpartition(".")[2] for it in re.findall(r"`([a-z._]+)`", page)}
-    seen, parts = load_observations(recording), []
-    found = identify(seen, lambda: parts.append(1))
-    assert {name.rpartition(".")[2] for name, _ in found.figures()} <= named
+    identified, parts = found
+    assert {name.rpartition(".")[2] for name, _ in identified.figures()} <= named
     # Whoever waits sees how far it is.
-    assert len(parts) == parts_of(seen) == 1 + len(seen.robots)
+    assert parts == parts_of(seen) == 1 + len(seen.robots)
 
 
 @pytest.mark.slow  # it identifies twelve robots

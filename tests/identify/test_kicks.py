@@ -1,6 +1,7 @@
 """What becomes of a commanded kick, and of a ball that is kicked at the first touch."""
 
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
@@ -19,6 +20,13 @@ def settings(kept: float, returned: float) -> SimSettings:
     return SimSettings.model_validate({"limits": limits, "realism": {"ball_noise": 0.0005}})
 
 
+@cache
+def touches(kept: float, returned: float) -> tuple[Observations, tuple[SeenKick, ...]]:
+    """What cameras saw of 16 touches, and the kicks in it."""
+    seen = touched(settings(kept, returned), 16)
+    return seen, tuple(kicks_of(seen))
+
+
 def kicks_of(seen: Observations) -> list[SeenKick]:
     return identify_ball(seen, stretches(seen)).kicks
 
@@ -29,8 +37,8 @@ def identified(seen: Observations, kicks: list[SeenKick]) -> KickEstimate:
 
 @pytest.mark.parametrize(("kept", "returned"), [(1.0, 0.0), (0.4, 0.1)])
 def test_what_a_touch_keeps_and_gives_back_is_known(kept: float, returned: float) -> None:
-    seen = touched(settings(kept, returned), 16)
-    found = identified(seen, kicks_of(seen))
+    seen, kicks = touches(kept, returned)
+    found = identified(seen, list(kicks))
     assert found.kept.count > 8
     assert found.kept.seen
     assert found.kept.value == pytest.approx(kept, abs=0.05)
@@ -39,14 +47,14 @@ def test_what_a_touch_keeps_and_gives_back_is_known(kept: float, returned: float
 
 
 def test_three_touches_are_not_enough() -> None:
-    seen = touched(settings(0.4, 0.1), 16)
-    assert not identified(seen, [it for it in kicks_of(seen) if it.came is not None][:3]).kept.seen
+    seen, kicks = touches(0.4, 0.1)
+    assert not identified(seen, [it for it in kicks if it.came is not None][:3]).kept.seen
 
 
 def test_one_misread_touch_of_a_few_widens_the_interval() -> None:
     """A ball that met the hull before the mouth leaves elsewhere than a touch would send it."""
-    seen = touched(settings(1.0, 0.0), 16)
-    few = [it for it in kicks_of(seen) if it.came is not None][:5]
+    seen, kicks = touches(1.0, 0.0)
+    few = [it for it in kicks if it.came is not None][:5]
     aside = [abs(np.sin(it.direction)) for it in few]
     hardest = few[int(np.argmax(aside))]
     misread = [replace(it, direction=0.6 * it.direction) if it is hardest else it for it in few]

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from functools import cache
+
 import numpy as np
 import pytest
 
 from robobt.identify.noise import identify_noise
+from robobt.identify.observations import Observations
 from robobt.identify.opponents import identify_opponent
-from robobt.identify.robots import identify_robot
+from robobt.identify.robots import RobotEstimate, identify_robot
 from robobt.sim import SimSettings
 from robobt.sim.realism import RealismSettings
 from robobt.world.limits import RobotLimits
@@ -24,7 +27,20 @@ LATE = RealismSettings(
 WHOLE_DELAY = (7 + 12) / 240
 """Both delays in the simulator's steps of 1/240 s [s]."""
 
-SEEN = driven(LIMITS, SimSettings(realism=LATE))
+
+@cache
+def seen() -> Observations:
+    return driven(LIMITS, SimSettings(realism=LATE))
+
+
+@cache
+def own() -> RobotEstimate:
+    return identify_robot(seen(), 0)
+
+
+@cache
+def opponent() -> RobotEstimate:
+    return identify_opponent(seen(), 1, 0.001)
 
 
 @pytest.mark.parametrize(
@@ -39,26 +55,26 @@ SEEN = driven(LIMITS, SimSettings(realism=LATE))
     ],
 )
 def test_own_robots_are_known_from_commands(name: str, truth: float) -> None:
-    figure = identify_robot(SEEN, 0).figures[name]
+    figure = own().figures[name]
     assert figure.seen
     assert figure.value == pytest.approx(truth, rel=0.03)
 
 
 def test_the_whole_delay_is_known_to_a_millisecond() -> None:
-    figure = identify_robot(SEEN, 0).figures["delay"]
+    figure = own().figures["delay"]
     assert figure.seen
     assert figure.value == pytest.approx(WHOLE_DELAY, abs=0.001)
 
 
 def test_pictures_that_know_their_age_give_the_same_whole_delay() -> None:
-    aged = SEEN.between(0.0, np.inf)
+    aged = seen().between(0.0, np.inf)
     # Taken when they show it: the simulator rounds 30 ms to 7 steps.
     aged.times, aged.age = aged.times - 7 / 240, 7 / 240
     assert identify_robot(aged, 0).figures["delay"].value == pytest.approx(WHOLE_DELAY, abs=0.001)
 
 
 def test_a_limit_that_was_never_met_is_not_seen_enough() -> None:
-    figure = identify_robot(SEEN, 0).figures["max_turn"]
+    figure = own().figures["max_turn"]
     assert not figure.seen
     assert figure.text() == "not seen enough"
 
@@ -67,20 +83,20 @@ def test_a_limit_that_was_never_met_is_not_seen_enough() -> None:
     ("name", "truth"), [("max_speed", 2.2), ("acceleration", 2.6), ("side_acceleration", 2.2)]
 )
 def test_opponents_are_known_without_commands(name: str, truth: float) -> None:
-    assert not SEEN.commanded(1)
-    figure = identify_opponent(SEEN, 1, 0.001).figures[name]
+    assert not seen().commanded(1)
+    figure = opponent().figures[name]
     assert figure.seen
     assert figure.value == pytest.approx(truth, rel=0.05)
 
 
 def test_delay_and_gain_of_opponents_are_not_seen() -> None:
-    figures = identify_opponent(SEEN, 1, 0.001).figures
+    figures = opponent().figures
     assert not figures["delay"].seen
     assert not figures["gain"].seen
 
 
 def test_noise_and_gaps_are_known() -> None:
-    found = identify_noise(SEEN)
+    found = identify_noise(seen())
     assert found.robot_noise.value == pytest.approx(0.001, rel=0.1)
     assert found.heading_noise.value == pytest.approx(0.005, rel=0.1)
     assert found.missing_robot.value == pytest.approx(0.02, abs=0.008)
