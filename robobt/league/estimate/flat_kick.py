@@ -24,7 +24,7 @@ def flat_misfit(times: FloatArray, places: FloatArray, ball: BallSettings) -> fl
         ball: how it is expected to slide and roll.
     """
     middle = places.mean(axis=0)
-    _, _, (ahead, left) = np.linalg.svd(places - middle)
+    _, _, (ahead, left) = np.linalg.svd(places - middle, full_matrices=False)
     along, aside = (places - middle) @ ahead, (places - middle) @ left
     if along[-1] < along[0]:
         along = -along
