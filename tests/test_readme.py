@@ -49,7 +49,7 @@ def test_the_robobt_commands_run_one_after_the_other(tmp_path: Path, monkeypatch
     """As they stand there, but that matches and evaluations are shorter."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(
-        "robobt.match.load_scenario", lambda source, **how: load_scenario(source, **how).lasting(20.0)
+        "robobt.match.load_scenario", lambda source, **how: load_scenario(source, **how).lasting(10.0)
     )
     fewer = [option for name in ("starts", "held_out") for option in ("--set", f"evaluation.{name}=20")]
     for command in commands(TOUR):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cache
 from math import hypot
 from typing import Any
 
@@ -68,18 +69,23 @@ def played(seconds: float, expected_delay: float = 0.0, **options: Any) -> tuple
     return world, misses
 
 
+@cache
+def measured() -> tuple[LockstepWorld, list[float]]:
+    return played(8.0, delay="measured")
+
+
 def test_each_delay_is_measured_and_reckoned_with() -> None:
-    world, misses = played(8.0, delay="measured")
-    for measured in world.delays().values():
-        assert measured is not None
+    world, misses = measured()
+    for found in world.delays().values():
+        assert found is not None
         # Beside what the field delays, commands wait for its next step.
-        assert measured.seconds == pytest.approx(0.088, abs=0.006)
+        assert found.seconds == pytest.approx(0.088, abs=0.006)
     _, unaware = played(8.0)
     assert np.median(misses) < 0.2 * np.median(unaware)
 
 
 def test_what_is_measured_holds_the_delay_that_was_expected() -> None:
-    _, misses = played(8.0, delay="measured")
+    _, misses = measured()
     _, expecting = played(8.0, LATE.command_delay, delay="measured")
     assert np.median(expecting) == pytest.approx(np.median(misses), abs=0.005)
 

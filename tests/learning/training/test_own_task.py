@@ -26,6 +26,22 @@ TRAIN = (
     *[part for one in SHORT.split() for part in ("--set", one)],
 )
 
+AFTERWARDS = """
+import sys
+from robobt.cli import main
+def command(line):
+    sys.argv = ["robobt", *line.split()]
+    try:
+        main()
+    except SystemExit as end:
+        assert not end.code, line
+command("export broken --name bring_home --out models")
+print("---")
+play = "--blue my_play.yaml --import my_task.py --set ends.time_limit=2"
+command(f"match striker_vs_goalkeeper {play} --trials 1 --json")
+"""
+"""What is done with what was trained, in one process, which starts sooner than two."""
+
 
 def block(start: str) -> str:
     found = re.search(rf"(?ms)^```\w+\n({re.escape(start)}.*?)^```", PAGE)
@@ -67,19 +83,7 @@ def test_a_task_in_ones_own_folder_goes_all_the_way(
     line = json.loads(Path("broken/seed_0/log.jsonl").read_text().splitlines()[-1])
     assert set(line["terms"]) == {"home", "advance", "approach"}
 
-    run("-m", "robobt", "export", "broken", "--name", "bring_home", "--out", "models")
-    match = (
-        "-m",
-        "robobt",
-        "match",
-        "striker_vs_goalkeeper",
-        "--blue",
-        "my_play.yaml",
-        "--trials",
-        "1",
-        "--json",
-    )
-    played = json.loads(run(*match, "--set", "ends.time_limit=2", "--import", "my_task.py"))
+    played = json.loads(run("-c", AFTERWARDS).partition("---\n")[2])
     assert played["trials"] == 1
     observed = run(
         "-c", "import gymnasium; print(gymnasium.make('my_task:BringHome-v0').reset(seed=0)[0].shape)"
