@@ -100,9 +100,11 @@ def start_python(_no_process_outlives_its_test: None) -> Iterator[StartPython]:
     """Start Python with arguments, its output piped; what still runs when the test ends is killed."""
     with ExitStack() as processes:
 
-        def start(*arguments: object, env: dict[str, str] | None = None) -> subprocess.Popen[str]:
+        def start(
+            *arguments: object, env: dict[str, str] | None = None, stdin: int | None = None
+        ) -> subprocess.Popen[str]:
             command = [sys.executable, *map(str, arguments)]
-            process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True, env=env)
+            process = subprocess.Popen(command, stdin=stdin, stdout=subprocess.PIPE, text=True, env=env)
             processes.enter_context(process)
             # Before the context waits for it.
             processes.callback(process.kill)

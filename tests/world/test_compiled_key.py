@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import subprocess
 import sys
+from collections.abc import Callable, Iterator
 from enum import IntEnum
 from pathlib import Path
 from typing import NamedTuple
@@ -12,6 +13,7 @@ import numpy as np
 import pytest
 
 from robobt.world.compiled_key import key_of
+from tests.conftest import StartPython
 from tests.waiting import LIMIT
 
 INNER = """
@@ -32,24 +34,56 @@ if __name__ == "__main__":
 """
 
 
-def answer(folder: Path, factor: float, added: float) -> list[str]:
-    (folder / "constants.py").write_text(f"FACTOR = {factor}\n")
-    (folder / "inner.py").write_text(INNER.format(added=added))
-    (folder / "outer.py").write_text(OUTER)
-    run = [sys.executable, "-B", "outer.py"]
-    done = subprocess.run(run, cwd=folder, capture_output=True, text=True, check=True, timeout=LIMIT)
-    return done.stdout.split()
+FORKING = """
+import os, runpy, sys
+import robobt.world.compiled
+sys.path.insert(0, "")
+for script in sys.stdin:
+    if os.fork() == 0:
+        runpy.run_path(script.strip(), run_name="__main__")
+        sys.stdout.flush()
+        os._exit(0)
+    assert os.wait()[1] == 0
+"""
+"""Runs scripts, each in a process of its own which has imported numba: that takes longer than they do."""
+
+Run = Callable[[str], list[str]]
 
 
-def test_code_is_compiled_anew_where_something_that_it_calls_has_changed(tmp_path: Path) -> None:
-    assert answer(tmp_path, 2.0, 0.5) == ["20.5"]
-    value, *hits = answer(tmp_path, 2.0, 0.5)
+@pytest.fixture
+def run(start_python: StartPython, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Run]:
+    """Run a script of the test's folder and return the words of the line that it prints."""
+    monkeypatch.chdir(tmp_path)
+    process = start_python("-B", "-c", FORKING, stdin=subprocess.PIPE)
+    assert process.stdin is not None
+    assert process.stdout is not None
+    scripts, printed = process.stdin, process.stdout
+
+    def run(script: str) -> list[str]:
+        print(script, file=scripts, flush=True)
+        return printed.readline().split()
+
+    yield run
+    scripts.close()
+    assert process.wait(LIMIT) == 0
+
+
+def answer(run: Run, factor: float, added: float) -> list[str]:
+    Path("constants.py").write_text(f"FACTOR = {factor}\n")
+    Path("inner.py").write_text(INNER.format(added=added))
+    Path("outer.py").write_text(OUTER)
+    return run("outer.py")
+
+
+def test_code_is_compiled_anew_where_something_that_it_calls_has_changed(run: Run) -> None:
+    assert answer(run, 2.0, 0.5) == ["20.5"]
+    value, *hits = answer(run, 2.0, 0.5)
     assert value == "20.5"
     assert len(hits) == 1
-    assert answer(tmp_path, 2.0, 0.75) == ["20.75"]
-    assert answer(tmp_path, 3.0, 0.75) == ["30.75"]
+    assert answer(run, 2.0, 0.75) == ["20.75"]
+    assert answer(run, 3.0, 0.75) == ["30.75"]
     # And what was there before is there still.
-    assert len(answer(tmp_path, 2.0, 0.5)) == 2
+    assert len(answer(run, 2.0, 0.5)) == 2
 
 
 KINDS = """
@@ -69,13 +103,11 @@ print(double(made()), len(double.stats.cache_hits))
 """
 
 
-def test_what_was_kept_for_a_type_that_is_no_more_is_left_alone(tmp_path: Path) -> None:
-    (tmp_path / "user.py").write_text(USER)
-    run = [sys.executable, "-B", "user.py"]
+def test_what_was_kept_for_a_type_that_is_no_more_is_left_alone(run: Run) -> None:
+    Path("user.py").write_text(USER)
     for name, hits in (("Old", 0), ("Old", 1), ("New", 0), ("New", 1)):
-        (tmp_path / "kinds.py").write_text(KINDS.format(name=name))
-        done = subprocess.run(run, cwd=tmp_path, capture_output=True, text=True, check=True, timeout=LIMIT)
-        assert done.stdout.split() == ["4.0", str(hits)]
+        Path("kinds.py").write_text(KINDS.format(name=name))
+        assert run("user.py") == ["4.0", str(hits)]
 
 
 FACTORS = np.array([1.0, 2.0])
