@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import gc
 import logging
 import multiprocessing
@@ -15,6 +16,7 @@ from multiprocessing import resource_tracker
 from pathlib import Path
 
 import pytest
+import typer.testing
 from hypothesis import HealthCheck, settings
 
 from robobt.config.telling import OFTEN
@@ -25,6 +27,9 @@ pytest_plugins = ("tests.limits", "robobt.testing.plugin")
 # Terminals and services that run tests set these, and commands print otherwise.
 for _name in ("COLUMNS", "LINES", "FORCE_COLOR", "NO_COLOR", "PY_COLORS", "GITHUB_ACTIONS"):
     os.environ.pop(_name, None)
+
+# An application is made into commands by reading all its functions, which takes longer than most commands.
+typer.testing._get_command = functools.cache(typer.testing._get_command)  # type: ignore[attr-defined]
 
 # The same examples in every run, however long each takes on a busy machine.
 settings.register_profile(
@@ -45,6 +50,11 @@ def pytest_collection_finish() -> None:
     gc.freeze()
     gc.enable()
     gc.freeze = gc.unfreeze = lambda: None
+    # pytest puts its handlers on the root and on each logger that tells it nothing, as torch's fifty do, six
+    # times a test.
+    for name, log in logging.root.manager.loggerDict.items():
+        if name.startswith("torch") and isinstance(log, logging.Logger):
+            log.propagate = True
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
@@ -66,7 +76,9 @@ def _the_log_as_it_was() -> Iterator[None]:
     before = [(log.level, log.propagate) for log in logs]
     yield
     for log, (level, propagate) in zip(logs, before, strict=True):
-        log.setLevel(level)
+        if log.level != level:
+            # It makes all loggers forget what they have looked up.
+            log.setLevel(level)
         log.propagate = propagate
 
 
@@ -113,13 +125,18 @@ def start_python(_no_process_outlives_its_test: None) -> Iterator[StartPython]:
         yield start
 
 
+_THREADS = Path("/proc/self/task")
+
+
 def _children() -> set[int]:
     """Processes that this one has started and not waited for; empty where there is no /proc."""
     multiprocessing.active_children()  # waits for those that have ended
     found: set[int] = set()
-    for listed in Path("/proc/self/task").glob("*/children"):
-        with suppress(OSError):  # a thread that has just ended
-            found.update(map(int, listed.read_text().split()))
+    if _THREADS.exists():
+        for thread in os.listdir(_THREADS):
+            # Not where it has just ended.
+            with suppress(OSError), open(f"{_THREADS}/{thread}/children") as listed:
+                found.update(map(int, listed.read().split()))
     # Started with the first spawned process, and meant to outlive the others.
     found.discard(getattr(resource_tracker._resource_tracker, "_pid", None) or 0)
     return found

@@ -8,12 +8,13 @@ Tags, anchors, aliases, duplicate keys, other versions, bottomless nesting and l
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from functools import lru_cache
 from io import StringIO
 from math import inf, nan
 from pathlib import Path
-from typing import Any, TypeAlias, cast
+from typing import Any, TypeAlias, TypeVar, cast
 
 from ruamel.yaml import YAML
 from ruamel.yaml.error import MarkedYAMLError, YAMLError
@@ -40,6 +41,7 @@ MAX_YAML_DEPTH = 100
 
 Scalar: TypeAlias = bool | int | float | str | None
 Plain: TypeAlias = "Scalar | list[Plain] | dict[str, Plain]"
+Text = TypeVar("Text", bytes, str, bytes | str)
 
 
 @dataclass(slots=True)
@@ -63,7 +65,8 @@ def read_yaml(path: Path, error: type[ConfigError] = ConfigError) -> dict[str, A
     Raises:
         ConfigError: the file cannot be read, is not plain YAML or not a mapping; it names the line.
     """
-    data = parse_marked(read_limited(path, MAX_YAML_BYTES, error), str(path), error).plain()
+    content = read_limited(path, MAX_YAML_BYTES, error)
+    data = _parsed(_kept_document, content, str(path), error).plain()
     if not isinstance(data, dict):
         raise error(str(path), "must hold a mapping of fields")
     return data
@@ -86,8 +89,12 @@ def parse_marked(content: bytes | str, file: str, error: type[ConfigError] = Con
     """Return the data of one YAML document with its positions."""
     if len(content) > MAX_YAML_BYTES:
         raise error(file, f"is larger than {MAX_YAML_BYTES // 1024} KiB")
+    return _parsed(_document, content, file, error)
+
+
+def _parsed(document: Callable[[Text], Marked], content: Text, file: str, error: type[ConfigError]) -> Marked:
     try:
-        return _document(YAML(typ="safe", pure=True).parse(content))
+        return document(content)
     except MarkedYAMLError as cause:
         mark = cause.problem_mark or cause.context_mark
         line = None if mark is None else mark.line + 1
@@ -110,7 +117,14 @@ def write_yaml(data: object) -> str:
     return text.getvalue().removesuffix("...\n")
 
 
-def _document(events: Iterator[Event]) -> Marked:
+@lru_cache(maxsize=32)
+def _kept_document(content: bytes) -> Marked:
+    """Return a file's document, parsed once: scenarios are read for each match."""
+    return _document(content)
+
+
+def _document(content: bytes | str) -> Marked:
+    events: Iterator[Event] = YAML(typ="safe", pure=True).parse(content)
     next(events)
     start = next(events)
     if isinstance(start, StreamEndEvent):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import TypeGuard
 
 from py_trees.behaviour import Behaviour
 from py_trees.decorators import Decorator
@@ -18,7 +19,7 @@ def node_path(node: Behaviour) -> str:
     names: list[str] = []
     seen: set[int] = set()
     above: object = node
-    while isinstance(above, Behaviour) and id(above) not in seen:
+    while _is_node(above) and id(above) not in seen:
         seen.add(id(above))
         names.append(name_of(above))
         above = getattr(above, "parent", None)
@@ -70,7 +71,7 @@ def fault_of(root: Behaviour, shared: bool = False) -> tuple[Behaviour, str] | N
         child = next(below, way)
         if child is way:
             above.discard(id(way.pop()[0]))
-        elif not isinstance(child, Behaviour):
+        elif not _is_node(child):
             return node, f"one of its children is no node: {short_repr(child)}"
         elif id(child) in above:
             return child, "is its own descendant"
@@ -93,10 +94,15 @@ def _children_of(node: Behaviour) -> list[object]:
     found = getattr(node, "children", ())
     children: list[object] = list(found) if isinstance(found, list | tuple) else [found]
     # What a decorator ticks; its list of children says the same until somebody changes one of them.
-    if isinstance(node, Decorator) and hasattr(node, "decorated"):
+    if Decorator in type(node).__mro__ and hasattr(node, "decorated"):
         children += [] if any(child is node.decorated for child in children) else [node.decorated]
     return children
 
 
 def _nodes_below(node: Behaviour) -> list[Behaviour]:
-    return [child for child in _children_of(node) if isinstance(child, Behaviour)]
+    return [child for child in _children_of(node) if _is_node(child)]
+
+
+def _is_node(thing: object) -> TypeGuard[Behaviour]:
+    # py_trees' classes are abstract, and isinstance takes several times as long for those.
+    return Behaviour in type(thing).__mro__
