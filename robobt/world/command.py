@@ -43,6 +43,18 @@ class RobotCommand:
     dribbler: bool = False
     kick_angle: float = 0.0
 
+    def copy(self) -> RobotCommand:
+        """Return a command with the same entries; ``dataclasses.replace`` takes ten times as long."""
+        return RobotCommand(
+            self.vx,
+            self.vy,
+            self.omega,
+            self.kick_speed,
+            self.kick_trigger,
+            self.dribbler,
+            self.kick_angle,
+        )
+
     def finite(self) -> bool:
         """Return whether every number in it is finite; one that is not must not reach a robot."""
         # What is not finite stays so in a sum; sums of numbers that no robot is sent may overflow.

@@ -120,6 +120,7 @@ class Opponent(Protocol):
 
 
 _WITHOUT_GOAL, _SHOOT_SIZE, _SHOT_SIZE = GO_TO_BALL.size, SHOOT.size, SHOT.size
+_WITH_GOAL = GO_TO_BALL_TO_SHOOT.size
 _GO_TO_BALL_FIELDS, _SHOOT_FIELDS, _SHOT_FIELDS = (
     record_of(GO_TO_BALL.entries),
     record_of(SHOOT.entries),
@@ -330,12 +331,12 @@ def shot_scene(
 
 def go_to_ball_of(frame: Frame, robot: RobotState) -> FloatArray:
     """Compute the Go-To-Ball state of one robot in a frame, (6,)."""
-    return _go_to_ball(frame, robot, GO_TO_BALL.size)
+    return _go_to_ball(frame, robot, _WITHOUT_GOAL)
 
 
 def go_to_ball_to_shoot_of(frame: Frame, robot: RobotState) -> FloatArray:
     """Compute that of one that is to shoot, (8,)."""
-    return _go_to_ball(frame, robot, GO_TO_BALL_TO_SHOOT.size)
+    return _go_to_ball(frame, robot, _WITH_GOAL)
 
 
 def _go_to_ball(frame: Frame, robot: RobotState, size: int) -> FloatArray:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import fields
 from math import pi
 
 import pytest
@@ -16,6 +17,7 @@ from robobt.world import (
     FieldGeometry,
     Frame,
     GameState,
+    KickTrigger,
     RefereeCommand,
     Restart,
     RobotCommand,
@@ -144,3 +146,12 @@ def restart(command: RefereeCommand, kind: Restart, may_touch: bool = True) -> G
 )
 def test_whose_ball_it_is(game: GameState, blue: int, yellow: int) -> None:
     assert (game.ball_for(Team.BLUE), game.ball_for(Team.YELLOW)) == (blue, yellow)
+
+
+def test_a_copy_of_a_command_has_all_of_its_entries() -> None:
+    # Each other than by default, so that one which is left out is seen.
+    command = RobotCommand(1.0, 2.0, 3.0, 4.0, KickTrigger.NOW, True, 0.5)
+    default = RobotCommand()
+    assert all(getattr(command, entry.name) != getattr(default, entry.name) for entry in fields(command))
+    assert command.copy() == command
+    assert command.copy() is not command

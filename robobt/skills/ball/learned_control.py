@@ -4,17 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from contextlib import suppress
-from dataclasses import replace
 from functools import partial
 from math import inf, isnan
 from pathlib import Path
-from typing import TypeVar
+from typing import TypeAlias, TypeVar
 
 import numpy as np
 
 from robobt.config.errors import RobobtError
 from robobt.config.resources import models_folder
-from robobt.models.actions import command_of
+from robobt.models.actions import commander
 from robobt.models.file import ModelError, ModelFile, UnknownModelError
 from robobt.models.find import find_model, read_fitting_model
 from robobt.models.policy import load_policy
@@ -53,6 +52,7 @@ OBSERVERS: Mapping[str, Callable[[Frame, RobotState], FloatArray]] = {
 """The function that computes each observation from a frame, except the observations of robots in a team."""
 
 P = TypeVar("P")
+_Ready: TypeAlias = tuple[Callable[[FloatArray], list[float]], Callable[[list[float]], RobotCommand]]
 
 _EARLIEST = 0.004
 """How much earlier than a period of its training a decision may follow another to be remembered [s]."""
@@ -116,12 +116,16 @@ class LearnedControl:
         self.minds_kicker = places is not None and places.told > 1
         self.remembers = memory is not None
         self._memory_size, self._memory = memory, None if memory is None else _Recollection(memory)
-        self._infer: Callable[[FloatArray], list[float]] | None = None
+        self._ready: _Ready | None = None
         self._scaling = self.card.action
         if file.path.parent.resolve() == models_folder().resolve():
             _shipped[file.path] = file
         else:
-            self._infer = load_policy(file).single()
+            self._load()
+
+    def _load(self) -> _Ready:
+        self._ready = load_policy(self._file).single(), commander(self._scaling)
+        return self._ready
 
     def decide(
         self, frame: Frame, me: RobotState, sketch: Sketch | None = None, barred: bool = False
@@ -140,12 +144,11 @@ class LearnedControl:
             loaded.
         """
         try:
-            if self._infer is None:
-                self._infer = load_policy(self._file).single()
+            infer, command = self._ready or self._load()
             observed = self._observe(frame, me, barred=True) if barred else self._observe(frame, me)
             if self._memory is not None:
                 observed = self._memory.recall(observed, frame.time, self.card.period or frame.period)
-            action = self._infer(observed)
+            action = infer(observed)
             if self._memory is not None:
                 self._memory.act(action)
         except ModelError as error:
@@ -156,7 +159,7 @@ class LearnedControl:
             if not -_LIMIT <= entry <= _LIMIT:
                 said = "no number" if isnan(entry) else f"{entry:.3g}, outside [-1, 1]"
                 raise PolicyError(f"the policy {self.card.name} answers {said}")
-        return command_of(action, self._scaling)
+        return command(action)
 
     def forget(self) -> None:
         """Forget what was seen and done before."""
@@ -231,8 +234,8 @@ class PacedControl:
     ) -> None:
         self._control = LearnedControl(model, skill, observation)
         self.card = self._control.card
-        self._decided = -inf
-        self._command = RobotCommand()
+        self._period = self.card.period or 0.0
+        self._decided, self._command = -inf, RobotCommand()
 
     def restart(self) -> None:
         """Forget the last decision."""
@@ -250,13 +253,12 @@ class PacedControl:
             PolicyError: the policy's answer is not finite or is outside [-1, 1].
         """
         barred = team is not None and self._control.minds_kicker and has_kicked(frame, team, me.id)
-        period = self._control.card.period or 0.0
         # Half a tick of tolerance, because times are sums of periods with rounding errors.
-        if not 0.0 <= frame.time - self._decided < period - frame.period / 2:
+        if not 0.0 <= frame.time - self._decided < self._period - frame.period / 2:
             self._decided = -inf
             self._command = self._control.decide(frame, me, sketch, barred)
             self._decided = frame.time
-        command = replace(self._command)
+        command = self._command.copy()
         carry(command, me)
         return command
 
