@@ -11,7 +11,7 @@ PLAYING := .venv/.playing
 # Without bytecode, every process that a test starts compiles robobt anew.
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: match test test-fast install lint docs notebooks pictures clean
+.PHONY: match test test-fast durations install lint docs notebooks pictures clean
 
 match: $(PLAYING)
 	@mkdir -p out
@@ -24,6 +24,10 @@ test: $(INSTALLED)
 # Everything but the slowest tests, under a minute.
 test-fast: $(INSTALLED)
 	$(BIN)/python -m pytest -n 2 --dist worksteal -m "not slow and not integration"
+
+# The whole suite, and the twenty tests that take most processor time.
+durations: $(INSTALLED)
+	$(BIN)/python -m pytest -n 2 --dist worksteal -p tests.dearest
 
 # Style, types, the order of the rooms, and that each public name says what it takes and returns.
 lint: $(INSTALLED)

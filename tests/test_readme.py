@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 import subprocess
 from pathlib import Path
@@ -46,8 +47,9 @@ def test_the_two_commands_exist() -> None:
 
 @pytest.mark.integration
 def test_the_robobt_commands_run_one_after_the_other(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """As they stand there, but that matches and evaluations are shorter."""
+    """As they stand there, but that matches and evaluations are shorter, and played by this process alone."""
     monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(os, "sched_getaffinity", lambda _: {0}, raising=False)
     monkeypatch.setattr(
         "robobt.match.load_scenario", lambda source, **how: load_scenario(source, **how).lasting(10.0)
     )

@@ -239,7 +239,7 @@ def test_without_simulated_cameras_a_late_preset_is_identified_from_the_truth(
     name: str, tmp_path: Path
 ) -> None:
     # Its robots obey late, so that the trees are shown a prediction, but the cameras show what is.
-    scenario = load_scenario("three_v_three").lasting(4.0)
+    scenario = load_scenario("striker_vs_goalkeeper").lasting(4.0)
     changed = scenario.model_copy(update={"simulator": {"preset": name}})
     recording = load_recording(played(changed, tmp_path / "late.robobt.arrows"))
     assert recording.observed is not None

@@ -62,7 +62,7 @@ def test_the_baseline_row_of_table_4(trial: int, printed: float) -> None:
 @pytest.mark.integration
 def test_a_command_plays_the_scenario_of_a_file_and_a_play_of_one() -> None:
     scenario = str(SCENARIOS / "table4_trial1.yaml")
-    call = ["match", scenario, "--trials", "2", "--workers", "2"]
+    call = ["match", scenario, "--trials", "2", "--workers", "1"]
     for change in ([], ["--blue", "paper/robobulls.py:robobulls_attack_main"]):
         played = CliRunner().invoke(app, [*call, *change, "--json"])
         assert played.exit_code == 0, played.output
