@@ -28,6 +28,10 @@ pytest_plugins = ("tests.limits", "robobt.testing.plugin")
 for _name in ("COLUMNS", "LINES", "FORCE_COLOR", "NO_COLOR", "PY_COLORS", "GITHUB_ACTIONS"):
     os.environ.pop(_name, None)
 
+# Each worker of the suite has a core; threads of numeric libraries would only wait for those of the others.
+for _name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
+    os.environ.setdefault(_name, "1")
+
 # An application is made into commands by reading all its functions, which takes longer than most commands.
 typer.testing._get_command = functools.cache(typer.testing._get_command)  # type: ignore[attr-defined]
 
