@@ -1,0 +1,55 @@
+"""Adam without torch's own class takes the same steps."""
+
+from __future__ import annotations
+
+import pytest
+import torch
+
+from robobt.learning.agents.optimiser import Adam
+
+
+def weights() -> list[torch.nn.Parameter]:
+    generator = torch.Generator().manual_seed(0)
+    return [torch.nn.Parameter(torch.randn(*size, generator=generator)) for size in ((40, 30), (40,))]
+
+
+@pytest.mark.parametrize("decay", [0.0, 0.01])
+def test_its_steps_are_those_of_torchs_own_bit_for_bit(decay: float) -> None:
+    ours, theirs = weights(), weights()
+    adam = Adam(ours, 3e-3, decay, eps=1e-5)
+    plain = torch.optim.Adam(theirs, lr=3e-3, weight_decay=decay, eps=1e-5, fused=True)
+    generator = torch.Generator().manual_seed(1)
+    for step in range(20):
+        gradients = [torch.randn(weight.shape, generator=generator) for weight in ours]
+        for weight, gradient in zip(theirs, gradients, strict=True):
+            weight.grad = gradient.clone()
+        if step % 2:
+            norm = torch.nn.utils.clip_grad_norm_(theirs, 1.0)
+            assert torch.equal(adam.clipped_step(gradients, 1.0), norm)
+        else:
+            adam.step(gradients)
+        plain.step()
+        if step == 9:
+            adam.set_learning_rate(0.5)
+            plain.param_groups[0]["lr"] = 1.5e-3
+    assert all(torch.equal(one, other) for one, other in zip(ours, theirs, strict=True))
+    for place, moments in plain.state_dict()["state"].items():
+        assert moments.keys() == adam.moments[place].keys()
+        assert all(torch.equal(adam.moments[place][name], moment) for name, moment in moments.items())
+
+
+def test_one_that_goes_on_from_the_moments_of_another_takes_its_steps() -> None:
+    first, second = weights(), weights()
+    one, other = Adam(first, 1e-2), Adam(second, 1e-2)
+    assert one.moments == {}
+    gradients = [torch.ones_like(weight) for weight in first]
+    one.step(gradients)
+    other.step([2.0 * gradient for gradient in gradients])
+    other.restore(one.moments)
+    for mine, yours in zip(first, second, strict=True):
+        yours.data.copy_(mine.data)
+    one.step(gradients)
+    other.step(gradients)
+    assert all(torch.equal(mine, yours) for mine, yours in zip(first, second, strict=True))
+    other.restore({})
+    assert other.moments == {}
