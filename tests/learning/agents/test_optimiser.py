@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
+import sys
+
+import numpy as np
 import pytest
 import torch
 
+from robobt.learning.agents.nstep import Transitions
 from robobt.learning.agents.optimiser import Adam
+from tests.learning.tiny import learn, small_agent
 
 
 def weights() -> list[torch.nn.Parameter]:
@@ -53,3 +58,14 @@ def test_one_that_goes_on_from_the_moments_of_another_takes_its_steps() -> None:
     assert all(torch.equal(mine, yours) for mine, yours in zip(first, second, strict=True))
     other.restore({})
     assert other.moments == {}
+
+
+def test_a_learner_does_without_torchs_compiler(monkeypatch: pytest.MonkeyPatch) -> None:
+    # It cannot be imported, and torch's own optimiser has not met it before.
+    monkeypatch.setitem(sys.modules, "torch._dynamo", None)
+    decorated = torch.optim.Optimizer.add_param_group.__wrapped__  # type: ignore[attr-defined]
+    monkeypatch.delattr(decorated, "__dynamo_disable", raising=False)
+    with pytest.raises(ImportError):
+        torch.optim.Adam(weights())
+    row = np.zeros((8, 1))
+    learn(small_agent(1, 1), Transitions(row, row, row[:, 0], row[:, 0], row), 2)
