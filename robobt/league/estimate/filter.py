@@ -11,6 +11,7 @@ from math import hypot, inf, isfinite
 from statistics import fmean
 
 from robobt.league.estimate.ball_track import BallMotion, BallTrack, predict_ball
+from robobt.league.estimate.coming_kick import kicked_ball
 from robobt.league.estimate.flight import FlightWatch
 from robobt.league.estimate.kicks import Kick, KickWatch
 from robobt.league.estimate.possession import Possession, near_robot, stop_at_robots
@@ -251,11 +252,15 @@ class VisionFilter:
         motions = {
             robot: self._robot_at(robot, time + dead.get(robot, others)) for robot in sorted(self._robots)
         }
-        ball = self._ball_at(time + others, motions)
+        ball, last_touch, kicker = self._ball_at(time + others, motions), self.possession.last_touch, None
+        kick = self._coming_kick(time + others, motions) if dead else None
+        if kick is not None:
+            kicker, ball = kick
+            last_touch = kicker
         teams: dict[Team, list[RobotState]] = {team: [] for team in Team}
         for robot, m in motions.items():
             low = self._ball is not None and ball.z < RECEIVED_HEIGHT
-            contact = low and self.possession.has_ball(robot, m, ball)
+            contact = low and robot != kicker and self.possession.has_ball(robot, m, ball)
             limits = self._robots[robot].limits
             teams[robot.team].append(
                 RobotState(robot.number, m.x, m.y, m.heading, m.vx, m.vy, m.omega, contact, limits)
@@ -266,8 +271,28 @@ class VisionFilter:
             BallState(ball.x, ball.y, ball.vx, ball.vy, ball.z, ball.vz),
             tuple(teams[Team.BLUE]),
             tuple(teams[Team.YELLOW]),
-            last_touch=self.possession.last_touch,
+            last_touch=last_touch,
             ball_model=self._ball_model,
+        )
+
+    def _coming_kick(
+        self, time: float, motions: Mapping[RobotId, RobotMotion]
+    ) -> tuple[RobotId, BallMotion] | None:
+        """Return the robot that kicks the ball before a time [s], and the ball then; None if none does."""
+        track = self._ball
+        if track is None or self._flights.at(time) is not None:
+            return None
+        holders = [hold.robot for hold in self.possession.holds]
+        return kicked_ball(
+            track.motion,
+            track.time,
+            time,
+            self._robot_at,
+            motions,
+            self._sent,
+            self._limits_of,
+            holders,
+            self._ball_model,
         )
 
     def _confirmed_time(self, time: float) -> bool:

@@ -449,3 +449,21 @@ def test_what_cameras_report_and_how_sure_the_filter_is_can_be_drawn() -> None:
     circles = [shape for shape in shapes if shape[0] == "covariance"]
     assert len(circles) == 2
     assert all(0.0 < radius < 0.05 for *_, radius in circles)
+
+
+@pytest.mark.parametrize("speed", [0.0, 4.0])
+def test_a_kick_on_its_way_is_shown(speed: float) -> None:
+    watched = Watched()
+    watched.filter = VisionFilter(DIVISION_B, SimSettings(), {ME: RobotLimits(dead_time=0.1)})
+    gap = SimSettings().body.face + 0.0215
+    for tick in range(30):
+        watched.see([(ME, 0.0, 0.0, 0.0)], [(gap, 0.0)])
+        kick = speed if tick >= 28 else 0.0
+        watched.filter.sent(watched.time, {ME: RobotCommand(kick_speed=kick, dribbler=True)})
+    shown = watched.filter.frame_at(watched.time + 2 * PERIOD, to_effect=True)
+    assert shown.own[0].ball_contact is (speed == 0.0)
+    assert shown.ball.vx == pytest.approx(speed, abs=0.5)
+    # It leaves 0.1 s after the first command to kick, and is shown 0.1 s after two more periods.
+    assert shown.ball.x - gap == pytest.approx(speed * 3 * PERIOD, abs=0.03)
+    assert shown.last_touch == ME
+    assert watched.filter.frame_at(watched.time).own[0].ball_contact
