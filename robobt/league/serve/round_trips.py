@@ -127,9 +127,10 @@ class TripWatch:
     def delays(self, age: float) -> dict[RobotId, MeasuredDelay | None]:
         """Return each commanded robot's delay, from a command's coming until its effect is sent.
 
-        Commands that the field's realism has lost do not make it longer.
+        It is None for a robot that was not seen enough, or whose commands were all lost. Commands that the
+        field's realism has lost do not make it longer.
 
         Args:
             age: of a picture when it is sent [s].
         """
-        return self._delays.measured(age)
+        return dict.fromkeys(self.robots) | self._delays.measured(age)

@@ -57,6 +57,20 @@ def test_a_round_trip_is_from_a_picture_to_the_first_command() -> None:
     assert trips.pictures == 3
 
 
+def test_a_robot_whose_only_command_was_lost_is_told_as_not_seen_enough(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    served = ServedField(DIVISION_B, line_up(DIVISION_B, 2), SimSettings())
+    served.command_loss = 1.0
+    with SimServer(served, free_endpoints()) as server:
+        served.command(ROBOT, RobotCommand(1.0))
+        server.step()
+        assert server.delays() == {ROBOT: None}
+        assert trip_figures(server)["blue 0"]["delay"] is None
+        print_trips(server)
+    assert "not seen" in capsys.readouterr().out
+
+
 def measured(loss: float, seed: int, silent: range = range(0)) -> float:
     """The delay of a robot whose commands take 85 ms to be seen, of which a share gets lost [s]."""
     realism = RealismSettings(command_delay=0.05, vision_delay=0.035, command_loss=loss)
