@@ -89,3 +89,7 @@ class MeasuredWorld(PredictedWorld):
 
     def _ball_age(self, robots: tuple[RobotState, ...]) -> float:  # noqa: ARG002
         return fmean(self._shown_after) if self._shown_after else 0.0
+
+    def _present(self) -> float:
+        # Robots are predicted as if the picture were of now and their commands came later by its age.
+        return self._now + self._age

@@ -22,6 +22,9 @@ _BALL_STEP = 0.005
 _HALF_MOUTH = 0.04
 """Half of the usual width of a mouth [m]."""
 
+_KICK_REACH = 0.005
+"""Distance beyond its usual place at which a ball is kicked: fronts differ, and cameras err [m]."""
+
 _RETURNED = 0.3
 """Share of its speed at which a ball bounces off a robot: between a front's and a hull's in the simulator."""
 
@@ -40,7 +43,8 @@ class MetBall(NamedTuple):
 
     Attributes:
         ball: where it will be.
-        touched: the robot that will have met it last, None if none will.
+        touched: the robot that will have held or kicked it last, None if none will; one that it only bounces
+            off does not count.
         kept: whether that robot will have it.
     """
 
@@ -132,7 +136,7 @@ def met_ball(
             continue
         for way in near:
             robot, order = way.at(time), way.order(time)
-            if not _meet(ball, robot, kicks=order.kick_speed > 0.0, takes=time > now):
+            if not _meet(ball, robot, order.kick_speed, takes=time > now):
                 continue
             if order.kick_speed > 0.0:
                 if time > until - _SURE_AFTER:
@@ -171,7 +175,7 @@ def _may_meet(ball: BallState, way: RobotWay, time: float) -> bool:
     return apart < hypot(half_x, half_y) + hypot(way_x, way_y) + TOUCH_DISTANCE
 
 
-def _meet(ball: BallState, robot: RobotState, *, kicks: bool, takes: bool) -> bool:
+def _meet(ball: BallState, robot: RobotState, kick_speed: float, *, takes: bool) -> bool:
     """Return whether a robot kicks or takes a ball that has come to it; else the ball bounces off."""
     dx, dy = ball.x - robot.x, ball.y - robot.y
     gap = hypot(dx, dy)
@@ -181,13 +185,14 @@ def _meet(ball: BallState, robot: RobotState, *, kicks: bool, takes: bool) -> bo
     ahead, aside = c * dx + s * dy, c * dy - s * dx
     vx, vy = ball.vx - robot.vx + robot.omega * dy, ball.vy - robot.vy - robot.omega * dx
     if ahead > 0.0 and abs(aside) < _HALF_MOUTH:
-        if ahead > PLACE:
-            return False
-        nx, ny, inside = c, s, PLACE - ahead
         closing = -(c * vx + s * vy)
+        if ahead > PLACE:
+            # One that leaves fast has been kicked before.
+            return kick_speed > 0.0 and ahead < PLACE + _KICK_REACH and -closing < 0.5 * kick_speed
+        nx, ny, inside = c, s, PLACE - ahead
         limits = robot.limits
         taken = limits.catch_speed if limits.receive_speed is None else limits.receive_speed
-        if kicks or (takes and closing <= taken):
+        if kick_speed > 0.0 or (takes and closing <= taken):
             return True
     else:
         nx, ny, inside = dx / gap, dy / gap, TOUCH_DISTANCE - gap

@@ -179,6 +179,10 @@ class PredictedWorld(WrappedWorld):
         dead = fmean(robot.limits.dead_time for robot in robots) if robots else 0.0
         return self.vision_delay + self.command_delay + dead
 
+    def _present(self) -> float:
+        """Return when the robots' sensors reported, on the clock by which they are predicted [s]."""
+        return self._now
+
     def _orders(self, robot: RobotId, limits: RobotLimits) -> list[tuple[float, RobotCommand]]:
         """Return a robot's commands, each with the time from which it is in force [s]."""
         delay = self._delay(robot, limits)
@@ -190,7 +194,11 @@ class PredictedWorld(WrappedWorld):
         """Return the predicted ball and who touches it last; tell predicted robots whether they have it."""
         ball, model = frame.ball, frame.ball_model
         age = self._ball_age(tuple(after.values()))
-        seen, until = self._now - self.vision_delay, self._now - self.vision_delay + age
+        seen, until, present = (
+            self._now - self.vision_delay,
+            self._now - self.vision_delay + age,
+            self._present(),
+        )
         holders = [robot for robot, state in after.items() if state.ball_contact]
         ways = {
             robot: RobotWay(
@@ -209,10 +217,13 @@ class PredictedWorld(WrappedWorld):
             if len(holders) > 1:
                 # Where a robot sends a ball that another has too, nobody knows.
                 return now, None
-            met = met_ball(now, tuple(ways.values()), self._now, self._now, until, model, ways[holders[0]])
-            after[holders[0]].ball_contact = met.kept
-            return (now if met.kept else met.ball), None
-        met = met_ball(ball, tuple(ways.values()), seen, self._now, until, model)
+            holder = ways[holders[0]]
+            met = met_ball(now, tuple(ways.values()), present, present, until, model, holder)
+            if met.kept and met.touched is holder:
+                return now, None
+            after[holder.robot].ball_contact = False
+        else:
+            met = met_ball(ball, tuple(ways.values()), seen, present, until, model)
         touched = None if met.touched is None else met.touched.robot
         later = met.ball
         if touched is not None and met.kept:

@@ -13,8 +13,11 @@ from robobt.match.scenario.scenario import load_scenario
 from robobt.sim import SimWorld, preset
 from robobt.sim.realism import RealismSettings
 from robobt.world.command import CHIP_ANGLE, RobotCommand
+from robobt.world.delay import DelayWatch
 from robobt.world.field import DIVISION_B
 from robobt.world.game import Team
+from robobt.world.measured_prediction import MeasuredWorld
+from robobt.world.predicted_ball import PLACE
 from robobt.world.prediction import PredictedWorld
 from robobt.world.protocol import Placement
 from robobt.world.state import BALL_RADIUS, Frame, RobotId
@@ -323,6 +326,17 @@ def test_a_rolling_ball_is_met_by_the_robot_in_its_way(kick_at: int) -> None:
     assert (pairs[-1][0].ball.vx > 2.0) is (kick_at < 99)
 
 
+def test_a_ball_is_taken_no_earlier_than_it_comes() -> None:
+    """Slow enough that no step passes over the last millimetres before the mouth."""
+    made = late_field()
+    made.reset(Placement({BLUE: (-1.0, 0.0, 0.0), YELLOW: (3.0, 2.0, 0.0)}, (-0.82, 0.0, -0.6, 0.0)), 1)
+    for shown, _ in follow(made, 45, kick_at=99):
+        if shown.own[0].ball_contact:
+            break
+        nearest = shown.ball.x
+    assert nearest < -1.0 + PLACE + 0.004
+
+
 def test_a_ball_too_fast_to_be_taken_bounces_off() -> None:
     made = late_field(catch_speed=0.5)
     made.reset(Placement({BLUE: (-1.0, 0.0, math.pi), YELLOW: (3.0, 2.0, 0.0)}, (0.0, 0.0, -3.0, 0.0)), 1)
@@ -330,3 +344,77 @@ def test_a_ball_too_fast_to_be_taken_bounces_off() -> None:
     for shown, _ in pairs:
         assert shown.ball.x > -1.0
     assert 0.2 < pairs[-1][0].ball.vx < 2.0
+
+
+def test_a_kick_on_its_way_to_another_robot_is_caught_by_that_one() -> None:
+    made = late_field()
+    gap = preset("rsim").body.face + BALL_RADIUS
+    poses = {BLUE: (-1.0, 0.0, 0.0), YELLOW: (-0.65, 0.0, math.pi)}
+    made.reset(Placement(poses, (gap - 1.0, 0.0, 0.0, 0.0)), 1)
+    foreseen = []
+    for tick in range(30):
+        shown, real = made.observe(), made.truth()
+        if real.own[0].ball_contact and shown.opponents[0].ball_contact:
+            foreseen.append(shown)
+        kick = 3.0 if tick >= 10 else 0.0
+        made.act({BLUE: RobotCommand(kick_speed=kick, dribbler=True), YELLOW: RobotCommand(dribbler=True)})
+    assert foreseen
+    for shown in foreseen:
+        assert not shown.own[0].ball_contact
+        assert shown.last_touch == YELLOW
+        assert shown.ball.x == pytest.approx(-0.65 - gap, abs=0.02)
+
+
+@pytest.mark.parametrize("name", ["default", "grsim", "rsim", "erforce"])
+def test_a_ball_that_has_been_kicked_is_shown_so_before_cameras_see_it(name: str) -> None:
+    realism = RealismSettings(vision_delay=0.05, command_delay=0.05, ball_noise=0.001, robot_noise=0.001)
+    settings = preset(name, realism=realism)
+    sim = SimWorld(DIVISION_B, {BLUE: None, YELLOW: None}, settings, 0.01)
+    made = PredictedWorld(sim, realism.vision_delay, realism.command_delay)
+    ball = settings.body.face + BALL_RADIUS - 1.0
+    made.reset(Placement({BLUE: (-1.0, 0.0, 0.0), YELLOW: (3.0, 2.0, 0.0)}, (ball, 0.0, 0.0, 0.0)), 1)
+    kicked = 0
+    for tick in range(60):
+        shown, real = made.observe(), made.truth()
+        if real.ball.speed > 2.0:
+            kicked += 1
+            assert shown.ball.vx > 1.0
+        kick = 4.0 if tick > 30 else 0.0
+        made.act({BLUE: RobotCommand(vx=0.3, kick_speed=kick, dribbler=True), YELLOW: RobotCommand()})
+    assert kicked > 10
+
+
+def test_a_weak_kick_on_its_way_is_one_kick() -> None:
+    made = late_field(kick_carried=0.9)
+    gap = preset("rsim").body.face + BALL_RADIUS
+    made.reset(Placement({BLUE: (-1.0, 0.0, 0.0), YELLOW: (3.0, 2.0, 0.0)}, (gap - 1.0, 0.0, 0.0, 0.0)), 1)
+    for tick in range(25):
+        assert made.observe().ball.vx < 0.5
+        kick = 0.5 if tick >= 10 else 0.0
+        made.act({BLUE: RobotCommand(kick_speed=kick, dribbler=True), YELLOW: RobotCommand()})
+
+
+@pytest.mark.parametrize("response_loss", [0.0, 0.9])
+def test_a_ball_is_shown_alike_by_known_delays_and_by_those_expected(response_loss: float) -> None:
+    # A robot whose sensor tells nothing has not taken the ball until now.
+    realism = RealismSettings(vision_delay=0.05, command_delay=0.052, response_loss=response_loss)
+    settings = preset("rsim", realism=realism)
+    limits = settings.limits.model_copy(update={"catch_speed": 5.0})
+
+    def shown(measured: bool) -> list[tuple[float, float, bool]]:
+        sim = SimWorld(DIVISION_B, {BLUE: limits, YELLOW: limits}, settings, 0.01)
+        made = PredictedWorld(sim, realism.vision_delay, realism.command_delay)
+        if measured:
+            made = MeasuredWorld(sim, DelayWatch(limits, nominal=realism.command_delay))
+        made.reset(Placement({BLUE: (-1.0, 0.0, 0.0), YELLOW: (3.0, 2.0, 0.0)}, (0.0, 0.0, -3.0, 0.0)), 1)
+        found = []
+        for tick in range(80):
+            frame = made.observe()
+            found.append((frame.ball.x, frame.ball.vx, frame.own[0].ball_contact))
+            kick = 4.0 if tick > 50 else 0.0
+            made.act({BLUE: RobotCommand(kick_speed=kick, dribbler=True), YELLOW: RobotCommand()})
+        return found
+
+    known, expected = shown(measured=False), shown(measured=True)
+    assert {has for *_, has in known} == {False, True}
+    assert np.allclose(known, expected, atol=1e-6)
