@@ -97,6 +97,9 @@ class _Measured(MeasuredWorld):
         # Blue's robots have been moved before.
         return _coasting(seen, self._ball_age(()))
 
+    def _orders(self, robot: RobotId, limits: RobotLimits) -> list[tuple[float, RobotCommand]]:
+        return super()._orders(robot, limits) if robot.team is Team.BLUE else []
+
 
 class _ForBlueOnly(WrappedWorld):
     """Shows blue a predicted world, and yellow the true one."""
