@@ -43,8 +43,8 @@ class MetBall(NamedTuple):
 
     Attributes:
         ball: where it will be.
-        touched: the robot that will have held or kicked it last, None if none will; one that it only bounces
-            off does not count.
+        touched: the robot that will have held or kicked it last, None if none will after now; one that it
+            only bounces off does not count.
         kept: whether that robot will have it.
     """
 
@@ -111,7 +111,7 @@ def met_ball(
         ball: as it was seen; it is taken to roll.
         ways: the robots near it.
         seen: when that was [s].
-        now: until when no robot has taken it, as their sensors say [s].
+        now: until when no robot has taken it, as their sensors say, and it is known who has touched it [s].
         until: time of the ball that is returned [s].
         model: how it rolls.
         holder: the robot that has it when it was seen.
@@ -142,7 +142,9 @@ def met_ball(
                 if time > until - _SURE_AFTER:
                     return MetBall(_before_mouth(ball, robot, way.after), touched)
                 _kick(ball, robot, order)
-                rolls, touched = model.switch_share * ball.speed, way
+                rolls = model.switch_share * ball.speed
+                # Who has touched it until now is known.
+                touched = way if time > now else touched
             else:
                 holder = touched = way
                 break

@@ -384,6 +384,24 @@ def test_a_ball_that_has_been_kicked_is_shown_so_before_cameras_see_it(name: str
     assert kicked > 10
 
 
+def test_a_kick_of_a_moment_ago_does_not_hide_who_has_touched_the_ball_since() -> None:
+    realism = RealismSettings(vision_delay=0.1)
+    settings = preset("rsim", realism=realism)
+    made = PredictedWorld(SimWorld(DIVISION_B, {BLUE: None, YELLOW: None}, settings, 0.01), 0.1)
+    gap = settings.body.face + BALL_RADIUS
+    # It shows the ball its back.
+    poses = {BLUE: (-1.0, 0.0, 0.0), YELLOW: (-0.65, 0.0, 0.0)}
+    made.reset(Placement(poses, (gap - 1.0, 0.0, 0.0, 0.0)), 1)
+    touched = set()
+    for tick in range(50):
+        shown, real = made.observe(), made.truth()
+        if real.last_touch == YELLOW and not real.own[0].ball_contact:
+            touched.add(shown.last_touch)
+        kick = 4.0 if 10 <= tick < 25 else 0.0
+        made.act({BLUE: RobotCommand(kick_speed=kick, dribbler=True), YELLOW: RobotCommand()})
+    assert touched == {YELLOW}
+
+
 def test_a_weak_kick_on_its_way_is_one_kick() -> None:
     made = late_field(kick_carried=0.9)
     gap = preset("rsim").body.face + BALL_RADIUS
