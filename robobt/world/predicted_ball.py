@@ -136,7 +136,7 @@ def met_ball(
             continue
         for way in near:
             robot, order = way.at(time), way.order(time)
-            if not _meet(ball, robot, order.kick_speed, takes=time > now):
+            if not _meet(ball, robot, order.kick_speed * cos(order.kick_angle), takes=time > now):
                 continue
             if order.kick_speed > 0.0:
                 if time > until - _SURE_AFTER:
@@ -178,7 +178,10 @@ def _may_meet(ball: BallState, way: RobotWay, time: float) -> bool:
 
 
 def _meet(ball: BallState, robot: RobotState, kick_speed: float, *, takes: bool) -> bool:
-    """Return whether a robot kicks or takes a ball that has come to it; else the ball bounces off."""
+    """Return whether a robot kicks or takes a ball that has come to it; else the ball bounces off.
+
+    ``kick_speed`` is along the ground [m/s], 0 if the robot is not to kick.
+    """
     dx, dy = ball.x - robot.x, ball.y - robot.y
     gap = hypot(dx, dy)
     if gap >= TOUCH_DISTANCE or gap == 0.0:

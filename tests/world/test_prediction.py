@@ -402,14 +402,16 @@ def test_a_kick_of_a_moment_ago_does_not_hide_who_has_touched_the_ball_since() -
     assert touched == {YELLOW}
 
 
-def test_a_weak_kick_on_its_way_is_one_kick() -> None:
+@pytest.mark.parametrize(("speed", "angle"), [(0.5, 0.0), (1.5, 1.2)])
+def test_a_weak_or_steep_kick_on_its_way_is_one_kick(speed: float, angle: float) -> None:
     made = late_field(kick_carried=0.9)
     gap = preset("rsim").body.face + BALL_RADIUS
     made.reset(Placement({BLUE: (-1.0, 0.0, 0.0), YELLOW: (3.0, 2.0, 0.0)}, (gap - 1.0, 0.0, 0.0, 0.0)), 1)
     for tick in range(25):
-        assert made.observe().ball.vx < 0.5
-        kick = 0.5 if tick >= 10 else 0.0
-        made.act({BLUE: RobotCommand(kick_speed=kick, dribbler=True), YELLOW: RobotCommand()})
+        assert made.observe().ball.vx < speed * math.cos(angle) + 1e-9
+        kick = speed if tick >= 10 else 0.0
+        command = RobotCommand(kick_speed=kick, dribbler=True, kick_angle=angle)
+        made.act({BLUE: command, YELLOW: RobotCommand()})
 
 
 @pytest.mark.parametrize("response_loss", [0.0, 0.9])
