@@ -183,10 +183,7 @@ def policy_of(actor: nn.Module) -> Callable[[NDArray[np.float64]], NDArray[np.fl
 
 def _linear(fan_in: int, fan_out: int, generator: torch.Generator | None) -> nn.Linear:
     """Build PyTorch's default layer with weights from our generator instead of the process's."""
-    # Its own weights are dropped, and the process's generator is left alone. With nn.utils.skip_init, which
-    # makes none, torch imports sympy, 0.25 s.
-    with torch.random.fork_rng(devices=[]):
-        layer = nn.Linear(fan_in, fan_out)
+    layer: nn.Linear = nn.utils.skip_init(nn.Linear, fan_in, fan_out)  # type: ignore[no-untyped-call]
     bound = fan_in**-0.5
     with torch.no_grad():
         layer.weight.uniform_(-bound, bound, generator=generator)

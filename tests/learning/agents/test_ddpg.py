@@ -227,5 +227,5 @@ def test_the_actor_scales_raw_observations_itself():
 def test_learning_rates_can_fall():
     agent = small_agent(3, 2)
     agent.set_learning_rates(0.5)
-    rates = [each.rate for _, each in agent._optimisers()]
+    rates = [group["lr"] for _, each in agent._optimisers() for group in each.adam.param_groups]
     assert rates == [1e-3, 2.5e-3]
