@@ -123,8 +123,9 @@ def met_ball(
         if holder is not None:
             order = holder.order(time)
             if order.kick_speed > 0.0 and time <= until - _SURE_AFTER:
-                ball = _in_mouth(holder.at(time))
-                _kick(ball, holder.at(time), order)
+                robot = holder.at(time)
+                ball = _in_mouth(robot)
+                _kick(ball, robot, order)
                 rolls = model.switch_share * ball.speed
                 holder = None
         dt = min(_BALL_STEP, until - time) if near else until - time
