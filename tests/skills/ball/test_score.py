@@ -53,6 +53,20 @@ def test_it_leaves_the_ball_of_a_weak_dribbler_to_others(tmp_path: Path, held: f
     assert alone.tick(frame(me, ball=(2.1, 0.0), opponents=(robot(4.3, 0.4, number=3),))) is status
 
 
+@pytest.mark.parametrize(
+    ("weakest", "in_training", "status"),
+    [(0.5, None, Status.FAILURE), (0.5, 1.1, Status.RUNNING), (0.0, None, Status.RUNNING)],
+)
+def test_it_leaves_a_ball_that_gets_lost_sideways_to_others(
+    tmp_path: Path, weakest: float, in_training: float | None, status: Status
+) -> None:
+    limits = RobotLimits(carry_aside=in_training)
+    model = write_model(tmp_path, Passing(), score_card().model_copy(update={"limits": limits}))
+    alone = Alone(Score(policy=str(model), weakest=weakest))
+    me = replace(robot(2.0, 0.0), limits=RobotLimits(carry_aside=1.1))
+    assert alone.tick(frame(me, ball=(2.1, 0.0), opponents=(robot(4.3, 0.4, number=3),))) is status
+
+
 @pytest.mark.parametrize("weakest", [-0.1, 1.1])
 def test_the_weakest_dribbler_is_a_share(weakest: float) -> None:
     with pytest.raises(ValueError, match="weakest must be 0 to 1"):
