@@ -27,6 +27,7 @@ COMMANDS = {
     "degradation": "degradation:command",
     "blind_fields": "blind_fields:blind_fields",
     "delay_in_play": "delay_in_play:delay_in_play",
+    "blind_team": "blind_team:blind_team",
     "late_team": "late_team:late_team",
     "filter": "filter:filter_",
     "chips": "chips:chips",

@@ -118,6 +118,16 @@ def draw_field(seed: int) -> BlindField:
     return BlindField(seed, settings, limits, delays)
 
 
+def swapped(field: BlindField) -> BlindField:
+    """Return the field on which each team has the other one's robots."""
+    others = {robot: RobotId(robot.team.other, robot.number) for robot in field.limits}
+    return replace(
+        field,
+        limits={robot: field.limits[other] for robot, other in others.items()},
+        whole_delays={robot: field.whole_delays[other] for robot, other in others.items()},
+    )
+
+
 class _WatchedWorld(WrappedWorld):
     """A field as a team that does not know it sees it, and all that its cameras see and it sends.
 

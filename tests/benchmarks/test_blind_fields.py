@@ -6,8 +6,10 @@ from dataclasses import replace
 
 import pytest
 
-from benchmarks.blind.field import draw_field
+from benchmarks.blind.field import draw_field, swapped
 from benchmarks.blind.scores import Score, summed
+from robobt.world.game import Team
+from robobt.world.state import RobotId
 
 
 def test_a_seed_fixes_a_field_and_fields_differ() -> None:
@@ -16,6 +18,14 @@ def test_a_seed_fixes_a_field_and_fields_differ() -> None:
     delays = [min(draw_field(seed).whole_delays.values()) for seed in range(50)]
     assert 0.015 < min(delays) < 0.05
     assert max(max(draw_field(seed).whole_delays.values()) for seed in range(50)) < 0.14
+
+
+def test_swapped_teams_have_each_others_robots() -> None:
+    field = draw_field(7)
+    other = swapped(field)
+    assert other.limits[RobotId(Team.BLUE, 2)] == field.limits[RobotId(Team.YELLOW, 2)]
+    assert other.limits != field.limits
+    assert swapped(other) == field
 
 
 def test_scores_count_only_what_was_seen_enough() -> None:
