@@ -11,7 +11,8 @@ from typer.testing import CliRunner
 from benchmarks.__main__ import application
 from benchmarks.degradation import CELLS, cell_environment, degradation, write_on_card
 from robobt.learning.envs import GoToBallSettings, ShootSettings, make_task
-from robobt.learning.training.fresh_starts import JudgingError
+from robobt.learning.envs.soccer.settings import SoccerSettings
+from robobt.learning.training.fresh_starts import JudgingError, trained_policy
 from robobt.models.card import ObservationCard
 from robobt.models.file import Format, read_model_file
 from tests.models.made_models import Aimed, go_to_ball_card, shoot_card, write_model
@@ -70,6 +71,13 @@ def test_policies_with_and_without_memory_play_the_same_starts(tmp_path: Path, f
     held_out = read_model_file(Path(sources[0])).card.held_out
     assert held_out["success, +100 ms"].value == found["+100 ms"][sources[0]].rate
     assert held_out["success, +100 ms"].n == 12
+
+
+def test_a_policy_that_learned_by_playing_itself_is_judged_as_in_its_training() -> None:
+    environment, _ = trained_policy("duel_ppo")
+    assert isinstance(environment, SoccerSettings)
+    assert environment.blue == ("learner",)
+    assert environment.yellow == ("attack",)
 
 
 def trained(folder: Path, name: str = "trained", task: str = "shoot", format_: Format = "torchscript") -> str:

@@ -11,7 +11,9 @@ from robobt.learning.agents.networks import policy_of
 from robobt.learning.envs import ArenaTask, TaskSettings, make_task, run_starts
 from robobt.learning.envs.make import find_task
 from robobt.learning.training.evaluation import Evaluation, Policy
+from robobt.learning.training.preset_files import merged
 from robobt.learning.training.run_folder import RESULT, load_run
+from robobt.learning.training.settings import evaluated_on
 from robobt.learning.training.teachers import TEACHERS, TeacherError, playing
 from robobt.models.policy import load_policy
 
@@ -26,6 +28,9 @@ class JudgingError(RobobtError, ValueError):
 def trained_policy(source: str) -> tuple[TaskSettings, Policy]:
     """Return the environment and the policy of a training run's folder, or of a model by name or file.
 
+    The environment is that of training. Where a policy plays against itself there, it is the one in which
+    training judged it.
+
     Raises:
         RunFolderError: the folder holds no run that has ended.
         ModelError: the model cannot be used.
@@ -33,14 +38,22 @@ def trained_policy(source: str) -> tuple[TaskSettings, Policy]:
     """
     if Path(source).is_dir():
         result = load_run(best_seed(Path(source)))
-        return result.settings.environment, policy_of(result.actor)
+        trained = result.settings.environment
+        return (evaluated_on(result.settings) if trained.two_alike else trained), policy_of(result.actor)
     policy = load_policy(source, kind="policy")
     settings = policy.card.training.get("settings")
     task = settings.get("task") if isinstance(settings, dict) else None
-    if not isinstance(task, str):
+    if not isinstance(settings, dict) or not isinstance(task, str):
         raise JudgingError(f"{source}: its card names no task; give the folder of its training run")
     try:
-        return find_task(task).Settings.model_validate(policy.card.environment), policy
+        model = find_task(task).Settings
+        environment = model.model_validate(policy.card.environment)
+        if environment.two_alike:
+            data, judged = environment.model_dump(), settings.get("evaluation", {})
+            for name in ("environment", "held_out_environment"):
+                data = merged(data, judged.get(name, {}))
+            environment = model.model_validate(data)
+        return environment, policy
     except (KeyError, ValueError) as error:
         raise JudgingError(f"{source}: the environment on its card cannot be made: {error}") from error
 
