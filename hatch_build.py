@@ -23,8 +23,6 @@ from hatchling.builders.hooks.plugin.interface import BuildHookInterface
 LEFT_OUT = {
     "go_to_ball_among_robots_ppo.pt",
     "save_ppo.pt",
-    "score_on_defender_grsim_ppo.pt",
-    "score_on_goalkeeper_grsim_ppo.pt",
     "score_on_goalkeeper_robust.pt",
     "shoot_robust.pt",
     "paper_shots.parquet",
