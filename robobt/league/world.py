@@ -212,6 +212,11 @@ class LeagueWorld(World, Closing):
             pictures.append(Detections(frame.captured - self._began, frame.camera, ball, robots))
         return pictures
 
+    @property
+    def cameras(self) -> Mapping[int, tuple[float, float, float]]:
+        """See :attr:`robobt.world.World.cameras`."""
+        return self._feed.filter.cameras
+
     def reported(self) -> list[RefereeEvent]:
         """See :meth:`robobt.world.World.reported`."""
         return self._feed.reported(self._time)

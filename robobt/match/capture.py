@@ -98,7 +98,8 @@ class MatchCapture:
             self._world.draw(self._capture.field)
             # Observations that may differ from the truth are compared with it when they are written.
             shown = None if self._shows_truth else observed
-            self._capture.tick(truth, commands, shown, packed, self._world.detections())
+            world = self._world
+            self._capture.tick(truth, commands, shown, packed, world.detections(), world.cameras)
 
     def note(self, event: ReportedEvent) -> None:
         """Capture an event."""

@@ -139,6 +139,14 @@ class World(Protocol):
         """Return what cameras saw since this was asked last; empty where that is unknown, or the truth."""
         return ()
 
+    @property
+    def cameras(self) -> Mapping[int, tuple[float, float, float]]:
+        """Where cameras that take every ball to lie on the ground are, by number: x, y and height [m].
+
+        Empty where that is unknown, or where places on the ground are observed.
+        """
+        return {}
+
     def delays(self) -> Mapping[RobotId, MeasuredDelay | None]:
         """Return each commanded robot's whole delay, from a command to its seen effect.
 
@@ -234,6 +242,11 @@ class WrappedWorld(World):
     def detections(self) -> Sequence[Detections]:
         """See :meth:`World.detections`."""
         return self.world.detections()
+
+    @property
+    def cameras(self) -> Mapping[int, tuple[float, float, float]]:
+        """See :attr:`World.cameras`."""
+        return self.world.cameras
 
     def delays(self) -> Mapping[RobotId, MeasuredDelay | None]:
         """See :meth:`World.delays`."""

@@ -96,6 +96,7 @@ class Capture:
         self.look(None, ())
         self._game: GameState | None = None
         self._touch: RobotId | None = None
+        self._cameras: Mapping[int, tuple[float, float, float]] = {}
         self._events: list[Event] = []
         self._ticks, self._round = 0, max(1, round(_LOOK_AGAIN / header.period))
 
@@ -126,6 +127,7 @@ class Capture:
         observed: Frame | None = None,
         packed: bytes | None = None,
         detections: Sequence[Detections] = (),
+        cameras: Mapping[int, tuple[float, float, float]] | None = None,
     ) -> None:
         """Take one frame, the commands decided on it and the trees' present state.
 
@@ -137,6 +139,7 @@ class Capture:
             observed: the frame that the trees saw, if it differs.
             packed: the frame packed from blue's side, if it has been packed already.
             detections: what cameras saw since the tick before, as they did.
+            cameras: where cameras are, as far as that is known; see :attr:`robobt.world.World.cameras`.
         """
         if self._ticks == self._round:
             self._ticks = 0
@@ -151,6 +154,8 @@ class Capture:
             self._game = game
         if frame.last_touch != self._touch:
             self._touch = changes["touch"] = frame.last_touch
+        if cameras and cameras != self._cameras:
+            self._cameras = changes["cameras"] = dict(cameras)
         if self._events:
             changes["events"] = self.events_left()
         if self._looked_at or self._drawn:

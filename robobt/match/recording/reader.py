@@ -79,6 +79,7 @@ class _BatchReader:
         self._touches: Timeline[RobotId | None] = []
         self._events: list[Event] = []
         self._outcome: dict[str, JsonValue] | None = None
+        self._cameras: dict[int, tuple[float, float, float]] = {}
         self._pictures: list[tuple[float, NDArray[np.float32]]] = []
         self._ticks = self._text = 0
 
@@ -148,6 +149,7 @@ class _BatchReader:
             events=self._events,
             outcome=self._outcome,
             pictures=pictures_of(self._pictures, robots),
+            cameras=self._cameras,
         )
 
     def _change(self, tick: int, text: str) -> None:
@@ -178,6 +180,7 @@ class _BatchReader:
             self._games.append((tick, changes.game))
         if "touch" in changes.model_fields_set:
             self._touches.append((tick, changes.touch))
+        self._cameras |= changes.cameras
         self._events += changes.events
         if changes.outcome is not None:
             self._outcome = changes.outcome

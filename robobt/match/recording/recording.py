@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from bisect import bisect_right
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from math import isfinite
 from pathlib import Path
 from typing import TypeAlias, TypeVar
@@ -86,6 +86,7 @@ class Recording:
         events: events in the order of recording.
         outcome: the outcome of the match, None if its recorder was not closed.
         pictures: what cameras saw; None where that is not known, or the truth (see the header).
+        cameras: x, y and height above the ground of cameras whose place is known, by number [m].
     """
 
     path: Path
@@ -104,6 +105,7 @@ class Recording:
     events: list[Event]
     outcome: dict[str, JsonValue] | None
     pictures: SeenPictures | None = None
+    cameras: dict[int, tuple[float, float, float]] = field(default_factory=dict)
 
     @property
     def complete(self) -> bool:

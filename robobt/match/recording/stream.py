@@ -28,6 +28,7 @@ from pydantic import (
     BaseModel,
     ConfigDict,
     Field,
+    FiniteFloat,
     JsonValue,
     StringConstraints,
     ValidationError,
@@ -90,6 +91,10 @@ class TickChanges(BaseModel):
     )
     game: GameState | None = Field(None, description="the referee's state, in blue's coordinates")
     touch: RobotId | None = Field(None, description="the robot that touched the ball last")
+    cameras: dict[int, tuple[FiniteFloat, FiniteFloat, FiniteFloat]] = Field(
+        {},
+        description="where cameras are, by number, whenever that changed: x, y, height above the ground [m]",
+    )
     events: list[Event] = []
     outcome: dict[str, JsonValue] | None = Field(None, description="how the match ended, at its last tick")
 
