@@ -27,15 +27,19 @@ from robobt.cli.option_groups.match import KeptTrials, MatchVenue, Trees, Trials
 from robobt.cli.option_groups.page import Page
 from robobt.cli.option_groups.refereeing import Refereeing
 from robobt.cli.option_groups.scenario import TeamChanges
-from robobt.cli.outputs import PAGES, RECORDING, make_folders
+from robobt.cli.outputs import PAGES, RECORDING, check_ending, make_folders
 from robobt.cli.shown.round_trips import print_delays
+from robobt.config.extras import need
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from robobt.cli.identify import Identified
+    from robobt.config.errors import RobobtError
     from robobt.match import MatchLoop, Scenario
     from robobt.match.refereeing import RefereeFactory
     from robobt.match.results.results import MatchResult
+    from robobt.match.runner import Run
 
 
 def match(
@@ -74,7 +78,7 @@ def match(
     real_time_factor: simulated time over wall time, in each process; trace: a hash that
     is equal for equal runs; recording: the file written, or null; delays: where they are measured, each
     robot's delay at the end of the last trial, from a command to its seen effect (seconds, low, high; null if
-    not seen enough).
+    not seen enough); identified: with --identify the preset file written, or null.
 
     Exit code 3 when a robot's tree failed in some tick, though all trials were played.
     """
@@ -106,6 +110,8 @@ def _play_on(
         raise typer.BadParameter(
             "needs --trials; --live records its first match", param_hint="--record-trial"
         )
+    if kept.identify is not None:
+        raise typer.BadParameter("needs --trials", param_hint="--identify")
     if kept.record is not None and not kept.record.name.lower().endswith(RECORDING):
         there = f"takes a name that ends in {RECORDING} here, not '{kept.record}'"
         raise typer.BadParameter(there, param_hint="--record")
@@ -141,10 +147,14 @@ def _play_trials(
     count = run.count(loaded)
     processes = run.processes(count, where.alone)
     file, layers = kept.recording(loaded.name, count), layer_names(kept.record_layers)
-    make_folders({"--record": file, "--out": kept.out})
+    if kept.identify is not None:
+        need("tournament", "google.protobuf", "pyarrow", "scipy")
+        check_ending("--identify", kept.identify, ".yaml", ".yml")
+    make_folders({"--record": file, "--out": kept.out, "--identify": kept.identify})
     with tempfile.TemporaryDirectory() as folder:
         as_page = file is not None and file.name.lower().endswith(PAGES)
-        recording = Path(folder) / f"trial{RECORDING}" if as_page else file
+        aside = as_page or (file is None and kept.identify is not None)
+        recording = Path(folder) / f"trial{RECORDING}" if aside else file
         with ExitStack() as stack:
             play: Callable[[MatchLoop], MatchResult] = MatchLoop.play
             if where.live:
@@ -173,6 +183,21 @@ def _play_trials(
             from robobt.live.replay_html import write_html
 
             write_html(recording, written)  # type: ignore[arg-type]
+        _tell(loaded, played, kept, recording, count, written=written, as_json=as_json)
+
+
+def _tell(
+    loaded: Scenario,
+    played: Run,
+    kept: KeptTrials,
+    recording: Path | None,
+    count: int,
+    *,
+    written: Path | None,
+    as_json: bool,
+) -> None:
+    """Print what trials came to, and what is identified from the one that was recorded."""
+    identified, problem = _identified(kept, played, recording)
     summary, delays = played.summary(), played.results[-1].delays
     if as_json:
         extra = {
@@ -180,6 +205,7 @@ def _play_trials(
             "interrupted": played.interrupted,
             "recording": None if written is None else str(written),
             "delays": {robot: it and asdict(it) for robot, it in delays.items()},
+            "identified": None if identified is None else str(kept.identify),
         }
         print_json({**summary.to_json(), **extra})
     else:
@@ -187,11 +213,33 @@ def _play_trials(
         print_delays(delays)
         if written is not None:
             say(f"Recording of trial {kept.trial}: {written}")
+        if identified is not None:
+            from robobt.cli.identify import show_identified
+
+            show_identified(identified, kept.identify)
     failed = tell_failures(summary, loaded.on_error)
+    if problem is not None:
+        raise problem
     if played.interrupted:
         raise typer.Exit(130)
     if failed:
         raise typer.Exit(TREES_FAILED)
+
+
+def _identified(
+    kept: KeptTrials, played: Run, recording: Path | None
+) -> tuple[Identified | None, RobobtError | None]:
+    """Return what is identified from the recorded trial, if that is asked for, or why nothing is."""
+    recorded = any(result.trial == kept.trial for result in played.results)
+    if kept.identify is None or recording is None or not recorded:
+        return None, None
+    from robobt.cli.identify import identified_from
+    from robobt.identify.sources import NothingToIdentifyError
+
+    try:
+        return identified_from(recording, f"trial {kept.trial}", kept.identify), None
+    except NothingToIdentifyError as error:
+        return None, error
 
 
 def _changed(scenario: Scenario, trees: Trees) -> Scenario:

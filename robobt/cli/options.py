@@ -43,6 +43,7 @@ MEANINGS = {
     "--grsim-port": "Port for grSim's commands and replacements",
     "--host": "Address to serve the page at",
     "--html": "Write a report, one page, to this file",
+    "--identify": "Identify the field from the recorded match, and write it to this preset file",
     "--import": "A Python file of yours that registers plays, skills, raters or tasks; may be repeated",
     "--in-step": "Advance time only when clients ask for it",
     "--interface": "This machine's address on the network to use",
@@ -135,7 +136,9 @@ _VALUES = {
     "--scenario": "SCENARIO",
     "--world": "WORLD",
     **dict.fromkeys(("--data", "--path"), "PATH"),
-    **dict.fromkeys(("--import", "--record", "--html", "--log", "--merge", "--game-controller"), "FILE"),
+    **dict.fromkeys(
+        ("--identify", "--import", "--record", "--html", "--log", "--merge", "--game-controller"), "FILE"
+    ),
     **dict.fromkeys(("--from", "--to", "--seconds"), "SECONDS"),
     **dict.fromkeys(("--vision", "--tracker", "--referee-address"), "HOST:PORT"),
 }

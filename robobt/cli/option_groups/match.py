@@ -72,6 +72,9 @@ class KeptTrials:
         option("--record-trial", f"; without --record the file is SCENARIO-N{RECORDING}", min=0),
     ] = None
     record_layers: Layers = ""
+    identify: Annotated[
+        Path | None, option("--identify", " (.yaml), as 'robobt record identify' does; without --record too")
+    ] = None
     out: Annotated[
         Path | None,
         option(
