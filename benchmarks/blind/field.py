@@ -108,6 +108,9 @@ def draw_field(seed: int) -> BlindField:
                 touch_kept=kept,
                 touch_returned=returned,
             )
+    # Last, so that all else of a seed's field is as it was before this was drawn.
+    carried = between(-0.2, 0.9)
+    limits = {robot: it.model_copy(update={"kick_carried": carried}) for robot, it in limits.items()}
     settings = SimSettings(ball=ball, realism=realism)
     step = PERIOD / ceil(PERIOD / settings.sub_step - 1e-9)
     seen = round(vision / step)

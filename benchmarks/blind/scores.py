@@ -14,17 +14,19 @@ from robobt.world.game import Team
 
 BARS = {
     "ball": 0.05,
+    "hops": 0.05,
     "own robots' limits": 0.10,
     "opponents' limits": 0.10,
     "gains": 0.05,
     "lags": 0.005,
     "kick speed": 0.05,
     "one touch": 0.05,
+    "carried": 0.05,
     "delay": 0.005,
     "noise and gaps": None,
 }
-"""Largest error allowed by kind of figure: relative; in seconds for delay and lags, in shares for one
-touch."""
+"""Largest error allowed by kind of figure: relative; in seconds for delay and lags, in shares for one touch
+and what a kick carries on."""
 
 _LIMITS = {
     "max_speed": "max_speed",
@@ -36,7 +38,7 @@ _LIMITS = {
     "turn_acceleration": "turn_acceleration",
 }
 
-_ABSOLUTE = ("one touch", "delay", "lags")
+_ABSOLUTE = ("one touch", "carried", "delay", "lags")
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,7 +49,7 @@ class Score:
         kind: of figure, a key of :data:`BARS`.
         name: of the figure.
         seen: whether it was seen enough.
-        error: estimate less truth; relative for all but one touch, delay and lags.
+        error: estimate less truth; relative for all but one touch, what a kick carries on, delay and lags.
         covered: whether its interval holds the truth.
     """
 
@@ -74,6 +76,8 @@ def _truths(field: BlindField) -> Iterator[tuple[str, str, float]]:
     settings = field.settings
     for name in ("slide_deceleration", "roll_deceleration", "switch_share"):
         yield "ball", f"ball.{name}", getattr(settings.ball, name)
+    for name in ("first_hop", "other_hops", "rebound"):
+        yield "hops", f"ball.{name}", getattr(settings.ball, name)
     for robot, limits in field.limits.items():
         own = robot.team is Team.BLUE
         for name, attribute in _LIMITS.items():
@@ -88,6 +92,7 @@ def _truths(field: BlindField) -> Iterator[tuple[str, str, float]]:
     yield "kick speed", "kicks.share", 1.0
     yield "one touch", "kicks.returned", next(iter(field.limits.values())).touch_returned
     yield "one touch", "kicks.kept", next(iter(field.limits.values())).touch_kept
+    yield "carried", "kicks.carried", next(iter(field.limits.values())).carried
     for name in ("ball_noise", "robot_noise", "heading_noise", "missing_ball", "missing_robot"):
         yield "noise and gaps", f"noise.{name}", getattr(settings.realism, name)
 

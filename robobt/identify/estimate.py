@@ -97,6 +97,18 @@ def widened(estimate: Estimate, share: float) -> Estimate:
     return replace(estimate, low=low, high=high)
 
 
+def scaled(estimate: Estimate, factor: float) -> Estimate:
+    """Return the estimate of something that is this many times as large."""
+    value, low, high = (it * factor for it in (estimate.value, estimate.low, estimate.high))
+    return replace(estimate, value=value, low=low, high=high)
+
+
+def not_negative(estimate: Estimate) -> Estimate:
+    """Return the estimate of something that cannot be below 0."""
+    value, low, high = (max(it, 0.0) for it in (estimate.value, estimate.low, estimate.high))
+    return replace(estimate, value=value, low=low, high=high) if isfinite(estimate.value) else estimate
+
+
 def without_outliers(values: FloatArray, factor: float = 4.0) -> FloatArray:
     """Return the finite values within ``factor`` robust standard deviations of their median."""
     good: FloatArray = values[np.isfinite(values)]

@@ -8,6 +8,7 @@ from math import sqrt
 import numpy as np
 
 from robobt.identify.observations import Observations
+from robobt.world.field import FieldGeometry
 from robobt.world.geometry import FloatArray
 from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS
 
@@ -77,7 +78,7 @@ def stretches(seen: Observations, least: int = 6) -> list[Stretch]:
         touching = _nearest(ball, ball, poses[row])
         between = _nearest(came, ball, poses[row])
         last = row
-        if _at_wall(seen, row):
+        if at_wall(seen.field, seen.ball[row]):
             _close(parts, seen, run, before, -1, least)
             run, before = [], -1
         elif touching >= 0:
@@ -155,8 +156,14 @@ def _nearest(start: FloatArray, end: FloatArray, robots: FloatArray) -> int:
     return nearest if gaps[nearest] < FREE else -1
 
 
-def _at_wall(seen: Observations, row: int) -> bool:
-    field, (x, y) = seen.field, np.abs(seen.ball[row])
+def at_wall(field: FieldGeometry, ball: FloatArray) -> bool:
+    """Return whether a ball may touch a wall or a goal.
+
+    Args:
+        field: with its walls.
+        ball: (2,) where the ball was seen [m].
+    """
+    x, y = np.abs(ball)
     outer_x, outer_y = field.outer
     if x > outer_x - _WALL_DISTANCE or y > outer_y - _WALL_DISTANCE:
         return True

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from math import cos, hypot, sin, sqrt
+from math import cos, hypot, nan, sin, sqrt
 from typing import NamedTuple
 
 import numpy as np
 
 from robobt.identify.ball import SeenKick
 from robobt.identify.ball_ways import MOUTH_DISTANCE
-from robobt.identify.estimate import Estimate, from_error, unseen
+from robobt.identify.estimate import Estimate, from_error, not_negative, unseen
 from robobt.identify.observations import Observations
 from robobt.world.geometry import FloatArray
 
@@ -27,8 +27,14 @@ _UNLIMITED_KICK = 6.35
 """A faster ball may have been held back by the kicker at the rules' limit, and its speed tells nothing of a
 touch [m/s]."""
 
-_LEAST_KICKS, _LEAST_TOUCHES = 3, 4
-"""Numbers of kicks and of first touches below which their shares are not seen enough."""
+_LEAST_KICKS, _LEAST_TOUCHES, _LEAST_CARRIED = 3, 4, 3
+"""Numbers of kicks, of first touches and of kicks of a ball that moved with the robot below which their
+shares are not seen enough."""
+
+_BEFORE_KICK, _ALIKE, _MOVING, _PUSHES = 0.1, 0.2, 0.3, 0.1
+"""A ball seen within this time before its kick [s] moved with the robot if it was as fast ahead, to within
+this much, and rested if it was slower than that, while the robot was faster than this [m/s]. Kicks of a
+resting ball show the carried share only where it is clearly more than this."""
 
 _MOST_SHARE_ERROR, _MOST_TOUCH_ERROR = 0.1, 0.1
 """Half widths of intervals beyond which the share of a command and those of a touch are not seen enough."""
@@ -46,6 +52,7 @@ class KickEstimate(NamedTuple):
             only.
         kept: share of a ball's speed across the heading, seen by the robot's front, that a kick on the first
             touch leaves.
+        carried: share of the forward speed of a ball that moves with the robot which a kick adds.
         fastest: speed of the fastest kick of any robot [m/s].
     """
 
@@ -53,6 +60,7 @@ class KickEstimate(NamedTuple):
     spread: Estimate
     returned: Estimate
     kept: Estimate
+    carried: Estimate
     fastest: Estimate
 
 
@@ -60,7 +68,8 @@ class KickEstimate(NamedTuple):
 class _Kick:
     """A kick in the robot's frame: what was commanded, how the ball left and, negative towards it, came.
 
-    ``front`` is how fast the robot's front moved sideways [m/s].
+    ``front`` is how fast the robot's front moved sideways [m/s]; ``carried`` says whether the ball was seen
+    to move ahead with the robot, ``pushed`` whether it rested and the robot drove into it.
     """
 
     commanded: float
@@ -71,6 +80,8 @@ class _Kick:
     first_touch: bool
     turn: float
     front: float
+    carried: bool = False
+    pushed: bool = False
 
     @property
     def held_back(self) -> bool:
@@ -90,13 +101,9 @@ def identify_kicks(seen: Observations, kicks: list[SeenKick], delay: float | Non
         the figures, each with its interval.
     """
     found = [kick for it in kicks if (kick := _in_frame(seen, it, delay)) is not None]
-    share, spread, returned, kept = _shares([kick for kick in found if kick.commanded > 0.0])
     fastest = max([it.speed for it in kicks], default=0.0)
     return KickEstimate(
-        share,
-        spread,
-        returned,
-        kept,
+        *_shares([kick for kick in found if kick.commanded > 0.0]),
         Estimate(fastest, fastest, fastest, len(kicks), len(kicks) >= _LEAST_KICKS, "m/s"),
     )
 
@@ -116,7 +123,7 @@ def _in_frame(seen: Observations, kick: SeenKick, delay: float | None) -> _Kick 
     first_touch = kick.came is not None and commanded > 0.0
     if kick.came is not None and not first_touch:
         commanded = 0.0
-    return _Kick(
+    found = _Kick(
         commanded,
         kick.speed * cos(angle),
         kick.speed * sin(angle),
@@ -126,6 +133,21 @@ def _in_frame(seen: Observations, kick: SeenKick, delay: float | None) -> _Kick 
         abs(turn),
         float(c * drove[1] - s * drove[0]) + turn * MOUTH_DISTANCE,
     )
+    if kick.came is None and found.came_ahead > _MOVING:
+        before = _ball_before(seen, kick.time, heading)
+        found.carried = abs(before - found.came_ahead) < _ALIKE
+        found.pushed = abs(before) < min(_ALIKE, 0.5 * found.came_ahead)
+    return found
+
+
+def _ball_before(seen: Observations, time: float, heading: float) -> float:
+    """Return how fast the ball moved along a robot's heading just before its kick [m/s]; NaN if unknown."""
+    rows = np.flatnonzero((seen.times > time - _BEFORE_KICK) & (seen.times < time))
+    rows = rows[np.isfinite(seen.ball[rows, 0])]
+    if len(rows) < 4:
+        return nan
+    vx, vy = np.polyfit(seen.times[rows] - time, seen.ball[rows], 1)[0].tolist()
+    return float(cos(heading) * vx + sin(heading) * vy)
 
 
 def _commanded(seen: Observations, kick: SeenKick, delay: float | None) -> float:
@@ -143,62 +165,71 @@ def _commanded(seen: Observations, kick: SeenKick, delay: float | None) -> float
     return middle if np.ptp(speeds) < _SAME_COMMAND * middle else 0.0
 
 
-def _shares(kicks: list[_Kick]) -> tuple[Estimate, Estimate, Estimate, Estimate]:
-    """Return the share of the command, its spread, and the shares that touches give back and keep.
+def _shares(kicks: list[_Kick]) -> tuple[Estimate, Estimate, Estimate, Estimate, Estimate]:
+    """Return the share of the command, its spread, what touches give back and keep, and what kicks carry on.
 
     Among few touches a misread one, such as that of a ball that met the hull before the mouth, looks as good
     as any. So the errors of a touch's shares are at least the jackknife's over touches.
     """
-    fitted = _fitted(kicks)
+    pushed = True
+    fitted = _fitted(kicks, pushed)
+    if fitted is None or fitted.numbers[3] - 2.0 * fitted.deviations[3] < _PUSHES:
+        pushed = False
+        fitted = _fitted(kicks, pushed)
     if fitted is None:
         count = sum(not kick.held_back for kick in kicks)
-        return unseen(count), unseen(count), unseen(), unseen()
+        return unseen(count), unseen(count), unseen(), unseen(), unseen()
     numbers, deviations, residuals = fitted
     touches = [kick for kick in kicks if kick.first_touch]
-    without = [_fitted([other for other in kicks if other is not kick]) for kick in touches]
+    without = [_fitted([other for other in kicks if other is not kick], pushed) for kick in touches]
     if len(touches) >= _LEAST_TOUCHES and all(it is not None for it in without):
         others = np.array([it.numbers for it in without if it is not None])
         jackknife = np.sqrt((len(touches) - 1) * np.mean((others - others.mean(axis=0)) ** 2, axis=0))
         deviations[1:] = np.maximum(deviations[1:], jackknife[1:])
     count, free = len(residuals), sum(not kick.held_back for kick in touches)
+    carried = sum(kick.carried or (pushed and kick.pushed) for kick in kicks)
     freedom = max(count - 1, 1)
     deviation = sqrt(float(np.sum(residuals**2)) / freedom)
     half = 1.96 * deviation / sqrt(2.0 * freedom)
     return (
         _judged(numbers[0], deviations[0], count, _LEAST_KICKS, _MOST_SHARE_ERROR),
         Estimate(deviation, max(deviation - half, 0.0), deviation + half, count, count >= 5),
-        _judged(numbers[1], deviations[1], free, _LEAST_TOUCHES, _MOST_TOUCH_ERROR),
-        _judged(numbers[2], deviations[2], len(touches), _LEAST_TOUCHES, _MOST_TOUCH_ERROR),
+        not_negative(_judged(numbers[1], deviations[1], free, _LEAST_TOUCHES, _MOST_TOUCH_ERROR)),
+        not_negative(_judged(numbers[2], deviations[2], len(touches), _LEAST_TOUCHES, _MOST_TOUCH_ERROR)),
+        _judged(numbers[3], deviations[3], carried, _LEAST_CARRIED, _MOST_TOUCH_ERROR),
     )
 
 
 class _Fit(NamedTuple):
-    """Shares of command, approach and sideways speed, their errors, and the relative misses of good kicks."""
+    """Shares of command, approach, sideways and carried speed, their errors, and good kicks' misses."""
 
     numbers: FloatArray
     deviations: FloatArray
     residuals: FloatArray
 
 
-def _fitted(kicks: list[_Kick]) -> _Fit | None:
-    """Fit the three shares; None if too few kicks tell how fast a commanded ball leaves.
+def _fitted(kicks: list[_Kick], pushed: bool) -> _Fit | None:
+    """Fit the four shares; None if too few kicks tell how fast a commanded ball leaves.
 
     Each kick tells how fast the ball left, unless a limit held it back, and each first touch how it left
-    aside; both are linear in the three shares. The direction of a ball that a limit held back is as without.
+    aside; both are linear in the shares. With ``pushed`` a resting ball is carried on as one that moved. The
+    direction of a ball that a limit held back is as without.
     """
     rows, values, errors = [], [], []
     for kick in kicks:
         slope = kick.aside / kick.ahead
         if kick.first_touch:
             across = kick.came_aside - kick.front
-            rows.append((slope * kick.commanded, -slope * kick.came_ahead, -across))
+            rows.append((slope * kick.commanded, -slope * kick.came_ahead, -across, 0.0))
             values.append(kick.front)
             angle_error = hypot(_ANGLE_ERROR, _TIME_ERROR * kick.turn)
             errors.append(hypot(angle_error * kick.ahead, _SPEED_ERROR))
         if not kick.held_back:
             # How a ball that the robot had moved on its own is not known well.
-            unsure = 0.0 if kick.first_touch else _HELD_ERROR * kick.came_ahead
-            rows.append((kick.commanded, -kick.came_ahead if kick.first_touch else 0.0, 0.0))
+            carried = kick.carried or (pushed and kick.pushed)
+            unsure = 0.0 if kick.first_touch or carried or kick.pushed else _HELD_ERROR * kick.came_ahead
+            returned = -kick.came_ahead if kick.first_touch else 0.0
+            rows.append((kick.commanded, returned, 0.0, kick.came_ahead if carried else 0.0))
             values.append(kick.ahead)
             errors.append(hypot(_LENGTH_ERROR * kick.commanded, _SPEED_ERROR, unsure))
     lengths = [i for i, row in enumerate(rows) if row[2] == 0.0 and row[0] > 0.0]
@@ -225,9 +256,9 @@ def _judged(value: float, error: float, count: int, least: int, most: float) -> 
     return replace(estimate, seen=estimate.seen and estimate.half_width < most)
 
 
-_EXPECTED_SHARES, _SHARES_ERROR = np.array([1.0, 0.12, 0.6]), np.array([0.2, 0.15, 0.4])
-"""Shares of command, approach and sideways speed before anything was seen, and their standard errors.
-Source: the figures that TIGERs published of real fields and expect of simulators."""
+_EXPECTED_SHARES, _SHARES_ERROR = np.array([1.0, 0.12, 0.6, 0.0]), np.array([0.2, 0.15, 0.4, 0.5])
+"""Shares of command, approach, sideways and carried speed before anything was seen, and their standard
+errors. Source of the first three: figures that TIGERs published of real fields and expect of simulators."""
 
 _ANGLE_ERROR, _TIME_ERROR, _LENGTH_ERROR, _SPEED_ERROR, _HELD_ERROR = 0.006, 0.002, 0.004, 0.015, 0.15
 """Standard errors of a direction [rad], of the moment of a kick [s], of a speed as a share of it, of what a

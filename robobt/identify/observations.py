@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,6 +11,34 @@ from numpy.typing import NDArray
 from robobt.world.field import FieldGeometry
 from robobt.world.geometry import FloatArray
 from robobt.world.state import RobotId
+
+
+@dataclass(slots=True)
+class CameraViews:
+    """What each camera saw by itself, in the order of time; P is the number of its pictures.
+
+    A camera takes every ball to lie on the ground.
+
+    Attributes:
+        times: (P,) times at which the pictures were taken [s].
+        cameras: (P,) number of the camera.
+        ball: (P, 2) x, y [m]; NaN where the ball was not seen.
+        poses: (P, K, 3) x, y [m], heading [rad] of the robots in the order of the observations.
+        places: x, y and height above the ground of those cameras whose place is known [m].
+    """
+
+    times: FloatArray
+    cameras: NDArray[np.int64]
+    ball: FloatArray
+    poses: FloatArray
+    places: Mapping[int, tuple[float, float, float]]
+
+    def between(self, start: float, end: float) -> CameraViews:
+        """Return the part from the time ``start`` up to the time ``end`` [s]."""
+        kept = (self.times >= start) & (self.times < end)
+        return CameraViews(
+            self.times[kept], self.cameras[kept], self.ball[kept], self.poses[kept], self.places
+        )
 
 
 @dataclass(slots=True)
@@ -31,6 +60,8 @@ class Observations:
         age: time from a picture to its arrival [s]; 0 if ``times`` are times of arrival.
         cameras: (T,) number of the camera that took the picture, -1 for several at once; None where there is
             a single view.
+        views: what each camera saw by itself; None where only what all saw together is known.
+        alone: mean of 1 over the number of cameras that a place of the ball comes from.
     """
 
     field: FieldGeometry
@@ -42,6 +73,8 @@ class Observations:
     commands: FloatArray
     age: float = 0.0
     cameras: NDArray[np.int64] | None = None
+    views: CameraViews | None = None
+    alone: float = 1.0
 
     def __len__(self) -> int:
         return len(self.times)
@@ -70,6 +103,8 @@ class Observations:
             self.commands[sent],
             self.age,
             None if self.cameras is None else self.cameras[kept],
+            None if self.views is None else self.views.between(self.times[0] + start, self.times[0] + end),
+            self.alone,
         )
 
 

@@ -20,6 +20,9 @@ _SIGNIFICANT_DIGITS = 4
 _LIMITS = DRIVE_PARAMETERS[1:]
 """Fields of a robot's limits that are identified: all but its delay."""
 
+_MOST_HOPS = {"first_hop": 1.0, "other_hops": 1.0, "rebound": 0.95}
+"""Greatest values of a ball's hops in settings."""
+
 _AT_LEAST = {"cross_ahead": -0.5, "cross_aside": -0.5}
 """Least values of limits, where that is not 0."""
 
@@ -43,11 +46,17 @@ def preset_of(identified: Identification, base: str = "default") -> dict[str, ob
         for name in ("slide_deceleration", "roll_deceleration", "switch_share")
         if (figure := getattr(identified.ball, name)).seen
     }
+    ball |= {
+        name: min(_rounded(figure), _MOST_HOPS[name])
+        for name, figure in identified.hops._asdict().items()
+        if figure.seen
+    }
     realism = {
         name: _rounded(figure)
         for name, figure in (
             ("ball_noise", identified.ball.noise),
             *identified.noise._asdict().items(),
+            ("object_offset", identified.cameras.size),
         )
         if figure.seen
     }
@@ -64,9 +73,12 @@ def preset_of(identified: Identification, base: str = "default") -> dict[str, ob
         realism |= {"vision_delay": _digits(rest), "command_delay": 0.0}
         limits |= {"dead_time": 0.0, "reaction": by_wheels}
     settings: dict[str, object] = {"preset": base}
-    kept, returned = identified.kicks.kept, identified.kicks.returned
+    kicks = identified.kicks
+    kept, returned, carried = kicks.kept, kicks.returned, kicks.carried
     if kept.seen:
         limits["touch_kept"] = _digits(min(max(kept.value, 0.0), 1.0))
+    if carried.seen:
+        limits["kick_carried"] = _digits(carried.value)
     if returned.seen:
         limits["touch_returned"] = _digits(min(max(returned.value, 0.0), 1.0))
     for name, part in (("ball", ball), ("limits", limits), ("realism", realism)):

@@ -9,14 +9,17 @@ from math import sqrt
 import numpy as np
 
 from robobt.config.wording import counted
-from robobt.identify.ball import BallEstimate, identify_ball
-from robobt.identify.estimate import Estimate, unseen
+from robobt.identify.ball import BallEstimate, identify_ball, model_of
+from robobt.identify.cameras import CameraEstimate, identify_cameras
+from robobt.identify.estimate import Estimate, not_negative, scaled, unseen
 from robobt.identify.free_ball import stretches
+from robobt.identify.hops import HopEstimate, identify_hops
 from robobt.identify.kicks import KickEstimate, identify_kicks
 from robobt.identify.noise import NoiseEstimate, identify_noise
 from robobt.identify.observations import Observations
 from robobt.identify.opponents import identify_opponent
 from robobt.identify.robots import RobotEstimate, identify_robot
+from robobt.identify.views import without_offsets
 
 _LEAST_PICTURES = 100
 """Fewer pictures than this hold nothing that could be identified."""
@@ -29,16 +32,20 @@ class Identification:
     Attributes:
         seconds: length of the play that it rests on [s].
         ball: how the ball slides and rolls.
+        hops: how a chipped ball hops.
         kicks: what kicks do.
         noise: noise and gaps.
+        cameras: by how much cameras see things shifted.
         delay: whole delay from a command to its seen effect, over all robots whose commands are known [s].
         robots: each robot's figures.
     """
 
     seconds: float
     ball: BallEstimate
+    hops: HopEstimate
     kicks: KickEstimate
     noise: NoiseEstimate
+    cameras: CameraEstimate
     delay: Estimate
     robots: tuple[RobotEstimate, ...]
 
@@ -46,11 +53,17 @@ class Identification:
         """Yield every figure with its dotted name, such as ``ball.slide_deceleration``."""
         for name in ("slide_deceleration", "roll_deceleration", "switch_share"):
             yield f"ball.{name}", getattr(self.ball, name)
+        for name, figure in self.hops._asdict().items():
+            yield f"ball.{name}", figure
         for name, figure in self.kicks._asdict().items():
             yield f"kicks.{name}", figure
         yield "noise.ball_noise", self.ball.noise
         for name, figure in self.noise._asdict().items():
             yield f"noise.{name}", figure
+        yield "noise.object_offset", self.cameras.size
+        for camera, offset in self.cameras.offsets.items():
+            yield f"camera {camera}.x", offset.x
+            yield f"camera {camera}.y", offset.y
         yield "delay", self.delay
         for robot in self.robots:
             for name, figure in robot.figures.items():
@@ -79,8 +92,14 @@ def identify(seen: Observations, on_part: Callable[[], None] = lambda: None) -> 
     """
     if len(seen) < _LEAST_PICTURES:
         raise ValueError(f"holds {counted(len(seen), 'picture')}, too few to identify anything")
+    cameras = identify_cameras(seen.views)
+    seen = without_offsets(seen, cameras)
     noise = identify_noise(seen)
-    ball = identify_ball(seen, stretches(seen))
+    free = stretches(seen)
+    ball = identify_ball(seen, free)
+    # The mean of several cameras has less noise than a detection.
+    ball = ball._replace(noise=scaled(ball.noise, 1.0 / sqrt(seen.alone)))
+    hops = identify_hops(seen, free, model_of(ball), ball.noise.value if ball.noise.seen else _USUAL_NOISE)
     on_part()
     usual = noise.robot_noise.value if noise.robot_noise.seen else _USUAL_NOISE
     robots = []
@@ -90,11 +109,12 @@ def identify(seen: Observations, on_part: Callable[[], None] = lambda: None) -> 
         on_part()
     delay = _together([robot.figures["delay"] for robot in robots])
     kicks = identify_kicks(seen, ball.kicks, delay.value - seen.age if delay.seen else None)
-    return Identification(float(seen.times[-1] - seen.times[0]), ball, kicks, noise, delay, tuple(robots))
+    seconds = float(seen.times[-1] - seen.times[0])
+    return Identification(seconds, ball, hops, kicks, noise, cameras, delay, tuple(robots))
 
 
 _USUAL_NOISE = 0.001
-"""Noise of a robot's position where it was not seen [m]."""
+"""Noise of a position where it was not seen [m]."""
 
 
 def _together(figures: list[Estimate]) -> Estimate:
@@ -110,7 +130,7 @@ def _together(figures: list[Estimate]) -> Estimate:
     excess = float(np.sum(weights * (values - mean) ** 2)) / max(len(values) - 1, 1)
     half = 1.96 * sqrt(max(excess, 1.0) / float(np.sum(weights)))
     half = max(half, float(errors.min()) * 1.96) if len(values) > 1 else half
-    return Estimate(mean, mean - half, mean + half, len(values), True, "s")
+    return not_negative(Estimate(mean, mean - half, mean + half, len(values), True, "s"))
 
 
 def as_json(identified: Identification) -> dict[str, object]:

@@ -289,6 +289,9 @@ def _figures(misses: Misses, p: FloatArray, scale: FloatArray, times: FloatArray
         low, high = value - half, value + half
         if not _LINEAR[i]:
             low, high = value * np.exp(-half), value * np.exp(half)
+        if not name.startswith("cross"):
+            # Nothing but what appears on the other axis can be negative.
+            low = max(low, 0.0)
         most = _MOST_TIME_ERROR if _LINEAR[i] and i < _CROSS else _MOST_LIMIT_ERROR
         enough = count >= 2 and half < most and _matters(misses, p, i, scale)
         figures[name] = Estimate(value, float(low), float(high), count, bool(enough), UNITS[name])

@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-import warnings
 from collections import Counter
 from pathlib import Path
-from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from robobt.config.errors import RobobtError
-from robobt.identify.observations import Observations, without_repeats
+from robobt.identify.observations import CameraViews, Observations
+from robobt.identify.views import in_order, together
 from robobt.league.log.files import LogKind, is_log, read_log
 from robobt.league.wire.packets import PacketCounts
 from robobt.league.wire.vision import CameraFrame, read_vision
@@ -20,9 +18,6 @@ from robobt.match.recording.header import RobotFlag
 from robobt.world.field import DIVISION_B, FieldGeometry
 from robobt.world.geometry import FloatArray
 from robobt.world.state import RobotId
-
-_ONE_PICTURE = 0.002
-"""Pictures of several cameras taken within this time are one [s]."""
 
 _LONGEST_AGE = 1.0
 """Ages of pictures beyond this come from clocks that differ [s]."""
@@ -68,10 +63,14 @@ def observations_of(recording: Recording) -> Observations:
     commands[:, ~sent.any(axis=0)] = np.nan
     if recording.pictures is not None:
         seen = recording.pictures
-        pictures = _together(
-            seen.times, seen.cameras, seen.ball.astype(np.float64), seen.robots.astype(np.float64)
+        views = in_order(
+            seen.times,
+            seen.cameras,
+            seen.ball.astype(np.float64),
+            seen.robots.astype(np.float64),
+            recording.cameras,
         )
-        return _observations(header.field, robots, pictures, times, commands, seen.ages)
+        return _observations(header.field, robots, views, times, commands, seen.ages)
     if recording.observed is not None and not header.cameras_show_truth:
         raise NothingToIdentifyError(
             f"{recording.path}: does not say what cameras saw, only what trees were shown; record the match "
@@ -83,74 +82,29 @@ def observations_of(recording: Recording) -> Observations:
     )
 
 
-class _Pictures(NamedTuple):
-    """Pictures in order: times, ball (T, 2), poses (T, K, 3), cameras (T,) or -1 where several are one."""
-
-    times: FloatArray
-    ball: FloatArray
-    poses: FloatArray
-    cameras: NDArray[np.int64]
-
-
-def _together(
-    times: FloatArray, cameras: NDArray[np.int64], ball: FloatArray, poses: FloatArray
-) -> _Pictures:
-    """Put pictures in order, and those of several cameras that were taken at once into one."""
-    order = np.argsort(times, kind="stable")
-    groups: list[list[int]] = []
-    for row in order.tolist():
-        group = groups[-1] if groups else []
-        taken = [int(cameras[other]) for other in group]
-        if group and times[row] - times[group[0]] < _ONE_PICTURE and int(cameras[row]) not in taken:
-            group.append(row)
-        else:
-            groups.append([row])
-    with warnings.catch_warnings():
-        # What no camera saw has no mean.
-        warnings.simplefilter("ignore", RuntimeWarning)
-        return _Pictures(
-            np.array([times[group].mean() for group in groups]),
-            np.array([_mean(ball[group]) for group in groups]),
-            np.array([_mean_poses(poses[group]) for group in groups]),
-            np.array([cameras[group[0]] if len(group) == 1 else -1 for group in groups]),
-        )
-
-
-def _mean(values: FloatArray) -> FloatArray:
-    result: FloatArray = values[0] if len(values) == 1 else np.nanmean(values, axis=0)
-    return result
-
-
-def _mean_poses(poses: FloatArray) -> FloatArray:
-    if len(poses) == 1:
-        return _mean(poses)
-    heading = np.arctan2(np.nanmean(np.sin(poses[..., 2]), axis=0), np.nanmean(np.cos(poses[..., 2]), axis=0))
-    return np.concatenate([_mean(poses[..., :2]), heading[:, None]], axis=1)
-
-
 def _observations(
     field: FieldGeometry,
     robots: tuple[RobotId, ...],
-    pictures: _Pictures,
+    views: CameraViews,
     sent: FloatArray,
     commands: FloatArray,
     ages: FloatArray,
 ) -> Observations:
-    poses = np.array(pictures.poses)
-    for robot in range(len(robots)):
-        poses[:, robot] = without_repeats(poses[:, robot])
+    pictures = together(views)
     good = np.all((ages >= -1e-6) & (ages < _LONGEST_AGE))
-    several = len(set(pictures.cameras.tolist())) > 1
+    several = len(set(views.cameras.tolist())) > 1
     return Observations(
         field,
         robots,
         pictures.times,
-        without_repeats(pictures.ball),
-        poses,
+        pictures.ball,
+        pictures.poses,
         sent,
         commands,
         float(np.median(ages)) if good else 0.0,
         pictures.cameras if several else None,
+        views if several or views.places else None,
+        pictures.alone,
     )
 
 
@@ -163,11 +117,13 @@ def observations_of_log(path: Path) -> Observations:
     """
     counts, field = PacketCounts(), DIVISION_B
     frames: list[CameraFrame] = []
+    places: dict[int, tuple[float, float, float]] = {}
     for record in read_log(path):
         if record.kind in (LogKind.VISION, LogKind.VISION_2010):
             packet = read_vision(record.data, counts)
             if packet is not None:
                 field = packet.field or field
+                places |= packet.cameras
                 if packet.frame is not None:
                     frames.append(packet.frame)
     sights = Counter(robot.robot for frame in frames for robot in frame.robots)
@@ -185,11 +141,12 @@ def observations_of_log(path: Path) -> Observations:
         for it in frame.robots:
             if it.robot in place and it.heading is not None:
                 poses[row, place[it.robot]] = it.x, it.y, it.heading
-    pictures = _together(
+    views = in_order(
         np.array([frame.captured for frame in frames]),
         np.array([frame.camera for frame in frames]),
         ball,
         poses,
+        places,
     )
     ages = np.array([frame.sent - frame.captured for frame in frames])
-    return _observations(field, robots, pictures, np.zeros(0), np.zeros((0, len(robots), 6)), ages)
+    return _observations(field, robots, views, np.zeros(0), np.zeros((0, len(robots), 6)), ages)

@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from math import pi
+from pathlib import Path
 
 import numpy as np
 
 from robobt.identify.observations import Observations, without_repeats
+from robobt.league.log.files import LogKind, LogWriter
+from robobt.league.serve.cameras import Cameras
+from robobt.league.wire.geometry import write_geometry
+from robobt.league.wire.vision import write_vision
 from robobt.sim import SimSettings, SimWorld
-from robobt.world.command import RobotCommand
+from robobt.world.command import CHIP_ANGLE, RobotCommand
 from robobt.world.field import DIVISION_B
 from robobt.world.game import Team
 from robobt.world.geometry import FloatArray
@@ -104,6 +109,58 @@ def kicked(settings: SimSettings, kicks: int = 12, seed: int = 0) -> Observation
             asked = speed if 10 <= tick < 40 else 0.0
             watched.tick({robot: RobotCommand(0.0, 0.0, 0.0, asked)})
     return watched.observations()
+
+
+def chipped(settings: SimSettings, chips: int = 3, seed: int = 0) -> Observations:
+    """Return what cameras saw of a ball that blue 0 chipped again and again, at different speeds."""
+    watched = Watched({ROBOT: settings.limits}, settings)
+    for commands in chips_of(watched.world, chips, seed):
+        watched.tick(commands)
+    return watched.observations()
+
+
+ROBOT = RobotId(Team.BLUE, 0)
+
+
+def chips_of(world: SimWorld, chips: int, seed: int = 0) -> Iterator[dict[RobotId, RobotCommand]]:
+    """Yield the commands of blue 0 that chips again and again; each has to be carried out before the next."""
+    rng = np.random.default_rng(seed)
+    world.reset(Placement(robots={ROBOT: (-4.0, 0.0, 0.0)}, ball=(-3.9, 0.0, 0.0, 0.0)), seed)
+    for _ in range(chips):
+        angle = float(rng.uniform(-0.4, 0.4))
+        world.put_robot(ROBOT, -4.0, 0.0, angle)
+        world.put_ball(-4.0 + 0.0975 * float(np.cos(angle)), 0.0975 * float(np.sin(angle)), 0.0, 0.0)
+        speed = float(rng.uniform(3.0, 4.5))
+        for tick in range(round(2.0 / PERIOD)):
+            asked = speed if 10 <= tick < 40 else 0.0
+            yield {ROBOT: RobotCommand(0.0, 0.0, 0.0, asked, kick_angle=CHIP_ANGLE)}
+
+
+def pushed(settings: SimSettings, kicks: int, seed: int = 0) -> Observations:
+    """Return what cameras saw of a ball that blue 0 dribbled ahead, or held every third time, then kicked."""
+    watched = Watched({ROBOT: settings.limits}, settings)
+    rng = np.random.default_rng(seed)
+    watched.world.reset(Placement(robots={ROBOT: (-4.0, 0.0, 0.0)}, ball=(-3.9, 0.0, 0.0, 0.0)), seed)
+    for number in range(kicks):
+        watched.world.put_robot(ROBOT, -4.0, 0.0, 0.0)
+        watched.world.put_ball(-4.0 + 0.0975, 0.0, 0.0, 0.0)
+        drives, speed = float(rng.uniform(0.6, 1.4)) * (number % 3 > 0), float(rng.uniform(3.0, 4.5))
+        for tick in range(round(2.5 / PERIOD)):
+            kick = speed if 50 <= tick < 70 else 0.0
+            ahead = min(drives, 0.03 * tick) if tick < 70 else 0.0
+            watched.tick({ROBOT: RobotCommand(ahead, 0.0, 0.0, kick, dribbler=tick < 60)})
+    return watched.observations()
+
+
+def logged(path: Path, world: SimWorld, play: Iterable[Mapping[RobotId, RobotCommand]], cameras: int) -> None:
+    """Write a league log of play in a world as this many cameras over it see it."""
+    over = Cameras(world.field, world.settings.realism, cameras, np.random.default_rng(0), PERIOD)
+    with LogWriter(path) as log:
+        geometry = write_geometry(world.field, list(over.calibrated.values()))
+        for commands in play:
+            for frame in over.capture(world.truth(), world.time, world.time):
+                log.write(round(world.time * 1e9), LogKind.VISION, write_vision(frame, geometry))
+            world.act(commands)
 
 
 def touched(settings: SimSettings, touches: int, seed: int = 0) -> Observations:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import re
 import shlex
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 
@@ -14,7 +15,7 @@ from typer.testing import CliRunner
 
 from robobt.cli import app
 from robobt.identify import Identification, Observations, identify, report, write_preset
-from robobt.identify.estimate import unseen
+from robobt.identify.estimate import Estimate, unseen
 from robobt.identify.observations import without_repeats
 from robobt.identify.preset_file import preset_of
 from robobt.identify.report import parts_of
@@ -30,7 +31,7 @@ from robobt.world.game import Team
 from robobt.world.limits import RobotLimits
 from robobt.world.state import RobotId
 from robobt.worlds import sim_world
-from tests.identify.made import driven
+from tests.identify.made import chipped, driven
 
 pytestmark = pytest.mark.integration
 
@@ -141,6 +142,17 @@ def test_what_was_not_seen_enough_goes_into_no_preset() -> None:
     nothing = found.noise._replace(robot_noise=unseen())
     object.__setattr__(found, "noise", nothing)
     assert settings_from(preset_of(found)).realism.robot_noise == 0.0
+
+
+def test_hops_and_what_a_kick_carries_on_are_played_with(tmp_path: Path) -> None:
+    changes = {"ball": {"first_hop": 0.7, "rebound": 0.55}, "realism": {"ball_noise": 0.001}}
+    found = identify(chipped(SimSettings.model_validate(changes), chips=2))
+    carried = found.kicks._replace(carried=Estimate(0.8, 0.75, 0.85, 5, True))
+    write_preset(replace(found, kicks=carried), tmp_path / "field.yaml")
+    settings = preset(str(tmp_path / "field.yaml"))
+    assert settings.ball.first_hop == pytest.approx(0.7, abs=0.01)
+    assert settings.ball.rebound == pytest.approx(0.55, abs=0.02)
+    assert settings.limits.carried == 0.8
 
 
 @cache

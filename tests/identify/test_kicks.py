@@ -12,7 +12,7 @@ from robobt.identify.free_ball import stretches
 from robobt.identify.kicks import KickEstimate, identify_kicks
 from robobt.identify.observations import Observations
 from robobt.sim import SimSettings
-from tests.identify.made import PERIOD, kicked, touched
+from tests.identify.made import PERIOD, kicked, pushed, touched
 
 
 def settings(kept: float, returned: float) -> SimSettings:
@@ -64,3 +64,19 @@ def test_one_misread_touch_of_a_few_widens_the_interval() -> None:
 
 def test_a_robot_that_holds_the_ball_tells_nothing_of_touches() -> None:
     assert not identify(kicked(SimSettings())).kicks.kept.seen
+
+
+@pytest.mark.parametrize("carried", [0.9, -0.2])
+def test_what_a_kick_adds_to_a_ball_that_moves_with_the_robot_is_known(carried: float) -> None:
+    limits = {"kick_carried": carried}
+    seen = pushed(SimSettings.model_validate({"limits": limits, "realism": {"ball_noise": 0.0005}}), 9)
+    found = identified(seen, kicks_of(seen)).carried
+    assert found.seen
+    assert found.count >= 5
+    assert found.value == pytest.approx(carried, abs=0.06)
+    assert found.low < carried < found.high
+
+
+def test_kicks_from_a_standing_robot_do_not_tell_what_a_kick_adds() -> None:
+    seen = kicked(SimSettings(), kicks=6)
+    assert not identified(seen, kicks_of(seen)).carried.seen

@@ -60,6 +60,13 @@ def test_own_robots_are_known_from_commands(name: str, truth: float) -> None:
     assert figure.value == pytest.approx(truth, rel=0.03)
 
 
+def test_no_interval_of_what_cannot_be_negative_begins_below_0() -> None:
+    lags = [figure for name, figure in own().figures.items() if not name.startswith("cross")]
+    assert all(figure.low >= 0.0 for figure in lags)
+    # These robots have none, so that an interval about the estimate would.
+    assert any(own().figures[name].low == 0.0 for name in ("lag", "side_lag", "turn_lag"))
+
+
 def test_the_whole_delay_is_known_to_a_millisecond() -> None:
     figure = own().figures["delay"]
     assert figure.seen
