@@ -9,7 +9,7 @@ place is known shows the height too, because it takes every ball to lie on the g
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import hypot
+from math import hypot, inf
 from typing import NamedTuple
 
 import numpy as np
@@ -39,6 +39,13 @@ LEAST_NOISE = 0.0005
 
 _SEEN_AFTER = 0.04
 """A touch-down is seen if the ball was seen this long after it [s]."""
+
+LAUNCH_NUMBERS = 9
+"""Numbers that describe a launch; see :attr:`ChipFlight.launch`."""
+
+_CAMERA_ERROR = 0.1
+"""Standard deviation by which cameras are elsewhere than they say [m]. Source: ER-Force's simulator, whose
+realistic level has 0.1."""
 
 NEAREST = 0.9
 """A ball never counts as higher than this share of the camera's height."""
@@ -73,8 +80,8 @@ class ChipFlight:
         nearness: (n,) 1 over the height of that camera above the ball on the ground [1/m]; 0 where places are
             those above which the ball is.
         launched: what is known of its launch beside the flight.
-        launch: (6,) x, y [m], vx, vy, vz [m/s] at the kick, and how long that was after the ball was first
-            seen on its way [s].
+        launch: (9,) x, y [m], vx, vy, vz [m/s] at the kick, how long that was after the ball was first seen
+            on its way [s], and by how much the cameras are elsewhere than they say, x, y and height [m].
         hops: (3,) as for :func:`flown`, as this flight alone shows them.
         slowing: of the ball once it rolls [m/s^2].
     """
@@ -97,22 +104,25 @@ class ChipFlight:
         """Return (n, 2) by how much what was seen misses a flight [m].
 
         Args:
-            launch: (6,) as in :attr:`launch`.
+            launch: (9,) as in :attr:`launch`.
             hops: (3,) as for :func:`flown`.
         """
-        x, y, vx, vy, rise, start = launch.tolist()
+        x, y, vx, vy, rise, start, *_, higher = launch.tolist()
         speed = max(hypot(vx, vy), 1e-6)
         gone, height = flown(self.times - self.launched.first - start, speed, rise, hops, self.slowing)
         ahead = np.array([vx, vy]) / speed
         over = np.array([x, y]) + gone[:, None] * ahead
-        share = np.minimum(height * self.nearness, NEAREST)[:, None]
-        missed: FloatArray = self.places - (over - self.eyes * share) / (1.0 - share)
+        share = np.minimum(height * self.nearness / (1.0 + higher * self.nearness), NEAREST)[:, None]
+        missed: FloatArray = self.places - (over - (self.eyes + launch[6:8]) * share) / (1.0 - share)
         return missed
 
     def astray(self, launch: FloatArray) -> FloatArray:
-        """Return (2,) by how much the launch misses where the ball was before, in standard deviations."""
+        """Return (5,) by how much a launch, (9,), is unexpected, in standard deviations.
+
+        The first two say how far it is from where the ball was seen to go before.
+        """
         before = self.launched.place + self.launched.drove * launch[5]
-        return np.asarray((launch[:2] - before) / self.launched.error, dtype=np.float64)
+        return np.concatenate([(launch[:2] - before) / self.launched.error, launch[6:] / _CAMERA_ERROR])
 
     def seen_touch_downs(self, rebound: float) -> int:
         """Return how many touch-downs were seen, with some of what came after each."""
@@ -164,10 +174,10 @@ class FlightFit(NamedTuple):
 
     Attributes:
         hops: (3,) as for :func:`flown`.
-        launches: (n, 6) as in :class:`ChipFlight`.
+        launches: (n, 9) as in :class:`ChipFlight`.
         slopes: derivatives of the misses by hops and launches.
-        misses: three of the hops, then those of each flight, two a detection and two its launch, then what is
-            beyond bounds, in standard deviations.
+        misses: three of the hops, then those of each flight, two a detection and five its launch, then what
+            is beyond bounds, in standard deviations.
     """
 
     hops: FloatArray
@@ -193,15 +203,15 @@ def fit_flights(flights: list[ChipFlight], starts: list[FloatArray], noise: floa
     least, most = [_LOWER_HOPS], [_UPPER_HOPS]
     for it in flights:
         before = it.launched.last - it.launched.first
-        least.append(np.array([*[-np.inf] * 4, _SLOWEST_RISE, before - _LAUNCHED_WITHIN]))
-        most.append(np.array([*[np.inf] * 4, _FASTEST_RISE, _LAUNCHED_WITHIN]))
+        least.append(np.array([*[-inf] * 4, _SLOWEST_RISE, before - _LAUNCHED_WITHIN, *[-inf] * 3]))
+        most.append(np.array([*[inf] * 4, _FASTEST_RISE, _LAUNCHED_WITHIN, *[inf] * 3]))
     low, high = np.concatenate(least), np.concatenate(most)
 
     def misses(numbers: FloatArray) -> FloatArray:
         within = np.clip(numbers, low, high)
         beyond = (numbers - within)[np.isfinite(low)] / _BEYOND_BOUNDS
         parts = [(numbers[:3] - USUAL_HOPS) / _HOPS_ERROR]
-        for flight, launch in zip(flights, within[3:].reshape(-1, 6), strict=True):
+        for flight, launch in zip(flights, within[3:].reshape(-1, LAUNCH_NUMBERS), strict=True):
             parts += [flight.misses(launch, within[:3]).ravel() / noise, flight.astray(launch)]
         return np.concatenate([*parts, beyond])
 
@@ -214,4 +224,4 @@ def fit_flights(flights: list[ChipFlight], starts: list[FloatArray], noise: floa
         )
     found = min(fits, key=lambda fit: fit.cost)
     numbers = np.clip(found.x, low, high)
-    return FlightFit(numbers[:3], numbers[3:].reshape(-1, 6), np.asarray(found.jac), found.fun)
+    return FlightFit(numbers[:3], numbers[3:].reshape(-1, LAUNCH_NUMBERS), np.asarray(found.jac), found.fun)

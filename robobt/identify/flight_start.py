@@ -53,7 +53,7 @@ def start_flight(flight: ChipFlight) -> bool:
                     least = left
                     kept = np.clip(speeds[1:] / np.maximum(speeds[:-1], 1e-6), _LEAST_KEPT, _MOST_KEPT)
                     flight.hops = np.array([*kept[:2], *flight.hops[len(kept[:2]) : 2], rebound])
-                    flight.launch = np.array([*found[0], *found[1], rise, start])
+                    flight.launch = np.array([*found[0], *found[1], rise, start, 0.0, 0.0, 0.0])
     return least < inf
 
 

@@ -8,7 +8,7 @@ from math import hypot, sqrt
 import numpy as np
 
 from robobt.identify.ball_ways import MOUTH_DISTANCE
-from robobt.identify.flight_model import USUAL_HOPS, ChipFlight, Launched, fit_flights
+from robobt.identify.flight_model import LAUNCH_NUMBERS, USUAL_HOPS, ChipFlight, Launched, fit_flights
 from robobt.identify.flight_start import CHIP_LEAST, CHIP_MOST, SLOWEST_CHIP, start_flight
 from robobt.identify.free_ball import FREE, Stretch, at_wall, carried_on
 from robobt.identify.observations import Observations
@@ -138,7 +138,7 @@ def _candidates(
         if flights and len(kept) == len(flights[-1].times):
             continue
         seen_on_way = sights.times[kept], sights.places[kept], sights.eyes[kept], sights.nearness[kept]
-        flights.append(ChipFlight(*seen_on_way, launched, np.zeros(6), USUAL_HOPS, slowing))
+        flights.append(ChipFlight(*seen_on_way, launched, np.zeros(LAUNCH_NUMBERS), USUAL_HOPS, slowing))
     return flights
 
 

@@ -90,7 +90,7 @@ def _errors(fit: FlightFit, flights: list[ChipFlight]) -> list[float]:
     if len(flights) >= _CHIPS_SHOW_SPREAD:
         meat, row = np.zeros((3, 3)), 3
         for flight in flights:
-            rows = slice(row, row := row + 2 * len(flight.times) + 2)
+            rows = slice(row, row := row + 2 * len(flight.times) + 5)
             score: FloatArray = fit.slopes[rows, :3].T @ fit.misses[rows]
             meat += np.outer(score, score)
         count = len(flights)

@@ -44,9 +44,14 @@ def test_what_a_touch_down_leaves_is_known_after_three_chips(name: str) -> None:
     assert figure.low < HOPS[name] < figure.high
 
 
-@pytest.mark.parametrize("cameras", [1, 4])
-def test_cameras_that_see_a_flying_ball_farther_away_tell_the_hops(cameras: int, tmp_path: Path) -> None:
-    world = SimWorld(DIVISION_B, {ROBOT: SETTINGS.limits}, SETTINGS, PERIOD)
+@pytest.mark.parametrize(("cameras", "error"), [(1, 0.0), (4, 0.1)])
+def test_cameras_that_see_a_flying_ball_farther_away_tell_the_hops(
+    cameras: int, error: float, tmp_path: Path
+) -> None:
+    """Also cameras that are elsewhere than they say."""
+    realism = SETTINGS.realism.model_copy(update={"camera_error": error})
+    wrong = SETTINGS.model_copy(update={"realism": realism})
+    world = SimWorld(DIVISION_B, {ROBOT: SETTINGS.limits}, wrong, PERIOD)
     logged(tmp_path / "chips.log", world, chips_of(world, 3), cameras)
     figures = identified(load_observations(tmp_path / "chips.log"))
     for name, truth in HOPS.items():
