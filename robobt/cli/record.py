@@ -27,7 +27,7 @@ from robobt.config.wording import counted
 
 _File = Annotated[Path, typer.Argument(help=f"A recording (*{RECORDING}).")]
 _Robot = Annotated[str | None, option("--robot", "; may be left out where only one was recorded")]
-_BTLOG, _MCAP = ".btlog", ".mcap"
+_BTLOG, _MCAP, _PARQUET = ".btlog", ".mcap", ".parquet"
 
 
 def export(
@@ -36,7 +36,8 @@ def export(
         Path,
         option(
             "--out",
-            f" it: as an MCAP file of the whole match for Foxglove and Rerun ({_MCAP}), or a robot's tree as "
+            f" it: as an MCAP file of the whole match for Foxglove and Rerun ({_MCAP}), as a table of where "
+            f"ball and robots were ({_PARQUET}), or a robot's tree as "
             f"BehaviorTree.CPP's FileLogger2 logs it ({_BTLOG})",
             metavar="FILE",
         ),
@@ -46,10 +47,11 @@ def export(
     """Write a recording in a form that other tools read."""
     from robobt.match.recording import load_recording
 
-    check_ending("--out", out, _MCAP, _BTLOG)
+    check_ending("--out", out, _MCAP, _PARQUET, _BTLOG)
     mcap = out.name.lower().endswith(_MCAP)
-    if robot is not None and mcap:
-        raise typer.BadParameter("is for .btlog: an MCAP file holds all robots", param_hint="--robot")
+    parquet = out.name.lower().endswith(_PARQUET)
+    if robot is not None and (mcap or parquet):
+        raise typer.BadParameter("is for .btlog: other files hold all robots", param_hint="--robot")
     loaded = load_recording(recording)
     _spare(recording, out)
     make_folders({"--out": out})
@@ -57,6 +59,11 @@ def export(
         from robobt.match.recording.mcap import write_mcap
 
         say(f"MCAP file: {write_mcap(loaded, out)}")
+        return
+    if parquet:
+        from robobt.match.recording.parquet import write_parquet
+
+        say(f"Table: {write_parquet(loaded, out)}")
         return
     from robobt.match.recording.btlog import write_btlog
 

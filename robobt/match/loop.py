@@ -64,6 +64,7 @@ class MatchLoop(Closing):
         players: the robots, in the scenario's order, blue first.
         measures: the figures so far.
         game: the state of the game at the last frame.
+        events: what the referee has reported so far.
         referee: the referee, or None if there is none or it runs elsewhere.
         outcome: how the match ended, None while it is played.
 
@@ -100,6 +101,7 @@ class MatchLoop(Closing):
         self.players = make_players(scenario, self.world.observe())
         self.measures = Measures({player.robot: None for player in self.players})
         self.game: GameState = OPEN_PLAY
+        self.events: list[ReportedEvent] = []
         self.outcome: Outcome | None = None
         keepers = scenario.goalkeepers()
         self._lineups = {
@@ -305,6 +307,7 @@ class MatchLoop(Closing):
         return decision.events
 
     def _note_events(self, events: Sequence[ReportedEvent]) -> None:
+        self.events += events
         for event in events:
             self._trace.event(f"{event.kind} {event.robot}")
             self._captured.note(event)

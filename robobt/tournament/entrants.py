@@ -111,6 +111,28 @@ class Entrant:
         """Return what each of its robots plays, the goalkeeper last."""
         return [*self.players, *([self.goalkeeper] if self.goalkeeper else [])]
 
+    def to_json(self) -> str:
+        """Return it as JSON, without the contents of its files; the inverse of :meth:`from_json`."""
+        given: dict[str, object] = {"name": self.name, "source": self.source}
+        given["players"] = [part.model_dump(mode="json") for part in self.players]
+        for field in ("goalkeeper", "program"):
+            part = getattr(self, field)
+            given[field] = None if part is None else part.model_dump(mode="json")
+        return json.dumps(given, separators=(",", ":"))
+
+    @classmethod
+    def from_json(cls, text: str) -> Self:
+        """Return the entrant of such JSON."""
+        given = json.loads(text)
+        goalkeeper, program = given["goalkeeper"], given["program"]
+        return cls(
+            given["name"],
+            given["source"],
+            tuple([RobotPlay.model_validate(part) for part in given["players"]]),
+            None if goalkeeper is None else RobotPlay.model_validate(goalkeeper),
+            None if program is None else Program.model_validate(program, strict=False),
+        )
+
     def digest(self) -> str:
         """Hash its plays, with files' contents: an edited tree or another model makes another team."""
         parts = self.parts

@@ -117,7 +117,7 @@ class Job:
             return self._forfeit(fixture, error.team, f"{error}{kept}")
         except Exception as error:
             return Failure(fixture, one_line(f"{type(error).__name__}: {error}"))
-        return PlayedMatch.of_result(fixture, result, self.code, _now())
+        return PlayedMatch.of_result(fixture, result, self.code, _now(), match.events)
 
     def lost(self, fixture: Fixture, problem: str) -> PlayedMatch | Failure:
         """Return the result of a match whose process has died."""

@@ -111,6 +111,7 @@ class Plan:
         store = MatchStore(path, played)
         try:
             store.enter(self.entrants)
+            store.define("scenario", self.scenario.model_dump_json())
         except BaseException:
             store.close()
             raise

@@ -2,19 +2,35 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import asdict, dataclass, field, fields
 
+from robobt.match.referee.events import EventKind
 from robobt.match.results.results import MatchResult
 from robobt.match.results.teams import TeamResult
 from robobt.tournament.fixtures import Fixture
 from robobt.world.game import Team
+from robobt.world.protocol import ReportedEvent
 
 FORFEITS = {team: f"forfeit_{team.value}" for team in Team}
 """Outcomes of matches that a team lost because it crashed or hung."""
 
 MAY_DIFFER = ("wall_time", "finished")
 """Columns that differ between two plays of the same match."""
+
+KEPT_EVENTS = frozenset(
+    {
+        EventKind.GOAL,
+        EventKind.INVALID_GOAL,
+        EventKind.PENALTY_KICK_FAILED,
+        EventKind.MULTIPLE_FOULS,
+        EventKind.MULTIPLE_CARDS,
+    }
+)
+"""The referee's events that a store keeps: goals, penalty kicks and cards."""
+
+_MOST_EVENTS = 25
+"""Events that a store keeps of one match, so that a match takes less than 1 kB."""
 
 
 @dataclass(slots=True)
@@ -48,6 +64,8 @@ class PlayedMatch:
         code: hash of robobt's code that played it.
         wall_time: how long it took to play [s].
         finished: when, UTC.
+        events: goals, failed penalty kicks and cards, each as "12.35 goal blue 3" with its time [s], joined
+            by semicolons; the first 25 of them.
     """
 
     blue: str
@@ -64,6 +82,7 @@ class PlayedMatch:
     code: str = ""
     wall_time: float = 0.0
     finished: str = ""
+    events: str = ""
     sides: Mapping[str, SideResult] = field(default_factory=dict)
 
     @property
@@ -119,11 +138,20 @@ class PlayedMatch:
             )
             for team in Team
         }
-        return cls(**{name: row[name] for name in PLAIN}, sides=sides)  # type: ignore[arg-type]
+        # Stores of earlier versions hold no events.
+        known = {name: row[name] for name in PLAIN if name in row}
+        return cls(**known, sides=sides)  # type: ignore[arg-type]
 
     @classmethod
-    def of_result(cls, fixture: Fixture, result: MatchResult, code: str, finished: str) -> PlayedMatch:
-        """Return what is kept of a match's result."""
+    def of_result(
+        cls,
+        fixture: Fixture,
+        result: MatchResult,
+        code: str,
+        finished: str,
+        events: Iterable[ReportedEvent] = (),
+    ) -> PlayedMatch:
+        """Return what is kept of a match's result and of the referee's events."""
         sides = {}
         for team in Team:
             robots = [robot for name, robot in result.robots.items() if name.startswith(team.value)]
@@ -145,8 +173,14 @@ class PlayedMatch:
             code=code,
             wall_time=result.wall_time,
             finished=finished,
+            events=_told(events),
             sides=sides,
         )
+
+
+def _told(events: Iterable[ReportedEvent]) -> str:
+    kept = [event for event in events if event.kind in KEPT_EVENTS][:_MOST_EVENTS]
+    return "; ".join([f"{event.time:.2f} {event.kind} {event.robot or event.team or ''}" for event in kept])
 
 
 PLAIN = tuple(part.name for part in fields(PlayedMatch) if part.name != "sides")

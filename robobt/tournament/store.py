@@ -1,7 +1,8 @@
 """The store of a tournament: one SQLite file, one row a match, that several programs may write at once.
 
 Tables: ``tournament`` (what is played: field, value), ``entrants`` (name, digest, source) and ``matches``,
-one row a match by ``blue``, ``yellow`` and ``round``. Its other columns are the fields of
+one row a match by ``blue``, ``yellow`` and ``round``; ``definitions`` holds, as JSON, the scenario and the
+entrants in full, from which matches are played again. Its other columns are the fields of
 :class:`~robobt.tournament.played.PlayedMatch` and, behind ``blue_`` and ``yellow_``, those of its
 sides. Rows are only ever added: triggers refuse all other changes. Two stores of one tournament hold the same
 rows, except for ``wall_time`` and ``finished``, in any order of playing.
@@ -53,6 +54,11 @@ def _kinds() -> Iterator[str]:
         plain = name if name in PLAIN else name.partition("_")[2]
         yield f"{name} {_SQL_TYPES[kinds[plain]]}"
 
+
+_ADDED = "events"
+"""The column that stores of earlier versions lack."""
+
+_DEFINITIONS = "CREATE TABLE IF NOT EXISTS definitions (name TEXT PRIMARY KEY, value TEXT NOT NULL)"
 
 _SCHEMA = f"""
 CREATE TABLE tournament (field TEXT PRIMARY KEY, value TEXT NOT NULL);
@@ -110,7 +116,7 @@ class MatchStore(Closing):
         self._connection.close()
 
     def enter(self, entrants: Iterable[Entrant]) -> None:
-        """Add the entrants.
+        """Add the entrants, and their definitions.
 
         Raises:
             StoreError: the store knows another team by that name.
@@ -118,6 +124,21 @@ class MatchStore(Closing):
         with self._writing():
             for entrant in entrants:
                 self._enter(entrant.name, entrant.digest(), entrant.source)
+                self._define(f"entrant {entrant.name}", entrant.to_json())
+
+    def define(self, name: str, value: str) -> None:
+        """Keep a definition, as JSON, unless there is one of that name."""
+        with self._writing():
+            self._define(name, value)
+
+    def definitions(self) -> dict[str, str]:
+        """Return the definitions, as JSON, by their names: "scenario", and "entrant NAME" for each entrant.
+
+        Stores of earlier versions have none.
+        """
+        there = self._all("SELECT name FROM sqlite_master WHERE name = 'definitions'")
+        rows = self._all("SELECT * FROM definitions ORDER BY rowid") if there else []
+        return {row["name"]: row["value"] for row in rows}
 
     def entrants(self) -> dict[str, str]:
         """Return the entrants' digests by name, in the order in which they were entered."""
@@ -166,6 +187,8 @@ class MatchStore(Closing):
         with self._writing():
             for row in other._all("SELECT * FROM entrants ORDER BY rowid"):
                 self._enter(row["name"], row["digest"], row["source"])
+            for name, value in other.definitions().items():
+                self._define(name, value)
             return self._add(new)
 
     def _add(self, matches: Sequence[PlayedMatch]) -> int:
@@ -189,6 +212,12 @@ class MatchStore(Closing):
                 "is another team in this store; rename the entrant, or use another file",
                 f"entrants: {short_repr(name)}",
             )
+
+    def _define(self, name: str, value: str) -> None:
+        self._connection.execute(_DEFINITIONS)
+        self._connection.execute(
+            "INSERT INTO definitions VALUES (?, ?) ON CONFLICT (name) DO NOTHING", [name, value]
+        )
 
     def _open(self, played: Mapping[str, object] | None) -> None:
         # Nothing is lost when this process is killed; a machine that loses power loses the last rows at most.
@@ -215,6 +244,12 @@ class MatchStore(Closing):
             held = self._connection.execute("SELECT field, value FROM tournament ORDER BY rowid")
             self.played = {row[0]: row[1] for row in held}
             columns = {row["name"] for row in self._connection.execute("PRAGMA table_info(matches)")}
+            if {*MATCH_COLUMNS} - columns == {_ADDED}:
+                if not self._read_only:
+                    self._connection.execute(
+                        f"ALTER TABLE matches ADD COLUMN {_ADDED} TEXT NOT NULL DEFAULT ''"
+                    )
+                columns.add(_ADDED)
         if self.played.get("format") != TOURNAMENT_FORMAT:
             raise StoreError(
                 self.path, f"is {self.played.get('format')!r}, not {TOURNAMENT_FORMAT!r}", "format"

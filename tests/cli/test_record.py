@@ -51,7 +51,7 @@ def test_the_format_is_in_the_ending(recording: Path, name: str) -> None:
     before = recording.read_bytes()
     done = exported(recording, name)
     assert done.exit_code == 2
-    assert "takes a name that ends in .mcap, .btlog" in done.output
+    assert "takes a name that ends in .mcap, .parquet, .btlog" in done.output
     assert recording.read_bytes() == before
 
 

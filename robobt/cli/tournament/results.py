@@ -12,6 +12,7 @@ from rich.markup import escape
 
 from robobt.cli.common import Json, console, print_json, say, table
 from robobt.cli.options import option
+from robobt.cli.tournament.regenerated import Tracking, regenerate_matches
 from robobt.cli.tournament.tables import lead_text, print_encounters, print_standings
 from robobt.config.errors import unknown_name
 from robobt.config.wording import counted
@@ -29,15 +30,26 @@ def results(
     matches: Annotated[bool, option("--matches", " instead of the standings")] = False,
     compare: Annotated[tuple[str, str] | None, option("--compare")] = None,
     merge: Annotated[list[Path] | None, option("--merge")] = None,
+    regenerate: Annotated[
+        Path | None, option("--regenerate", "; --entrant, --outcome and --lost-by choose among them")
+    ] = None,
+    tracking: Annotated[Tracking, option("--tracking", ", for --regenerate")] = Tracking.ARROWS,
+    workers: Annotated[
+        int | None,
+        option("--workers", ", for --regenerate; 0 plays in the command's own process", min=0, max=256),
+    ] = None,
     as_json: Json = False,
 ) -> None:
-    """Sum up, list, compare and merge what tournaments have stored.
+    """Sum up, list, compare and merge what tournaments have stored, and play matches again.
 
     Keys of --json: played (what was played, by field), merged (matches that were new); then either matches,
     each with the columns of the table; or compare: met (as an encounter of 'robobt tournament run'; null
     if they have not), and others: opponents, rounds, lead (goals a match by which the first did better),
     low and high (95 %), ahead and behind (rounds in which the first made more and fewer points), p (exact);
-    or the keys of 'robobt tournament run': matches, distinct, standings, encounters.
+    or the keys of 'robobt tournament run': matches, distinct, standings, encounters; with --regenerate:
+    differences (what differs from who played them), equal (matches with equal hashes), regenerated, for each
+    match blue, yellow, round, seed, trace, again (its trace now), equal, problem and file. Exit code 1 if a
+    hash differs.
     """
     from robobt.tournament.standings import paired, standings_of
     from robobt.tournament.store import MatchStore
@@ -55,7 +67,11 @@ def results(
         raise typer.BadParameter("needs two different entrants", param_hint="--compare")
     ends = sorted({match.outcome for match in found})
     found = [match for match in found if _wanted(match, entrant or [], outcome, lost_by)]
-    said = {"played": played, "merged": merged}
+    said: dict[str, object] = {"played": played, "merged": merged}
+    if regenerate is not None:
+        with MatchStore(store) as held:
+            regenerate_matches(held, found, regenerate, tracking, workers, said, as_json=as_json)
+        return
     if merge and not as_json:
         say(f"Matches taken over: {merged}")
     if matches or outcome or lost_by:
