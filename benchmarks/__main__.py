@@ -33,6 +33,7 @@ COMMANDS = {
     "chips": "chips:chips",
     "clock": "clock:clock",
     "league": "league:league",
+    "what_if": "what_if:what_if",
     "measurements": "measurements:measurements",
 }
 """The benchmarks by name, each a function of a module here."""

@@ -66,6 +66,7 @@ _ROOMS = (
     "testing",
     "tournament",
     "tree",
+    "what_if",
     "world",
 )
 """Folders that ``robobt.NAME`` reaches without an import of their own."""

@@ -13,6 +13,7 @@ from robobt import skills as skills
 from robobt import testing as testing
 from robobt import tournament as tournament
 from robobt import tree as tree
+from robobt import what_if as what_if
 from robobt import world as world
 from robobt.config.errors import RobobtError as RobobtError
 from robobt.learning.trained import train as train

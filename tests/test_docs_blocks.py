@@ -62,6 +62,7 @@ REPLACED = {
     "live": {"def on_running": "class Drawing(Skill):\n  gap = 0.5\n  def on_running"},
     "scenarios": {"trials=20": "trials=2"},
     "team": {"...": "Stop()"},
+    "what_if": {"61.5": "9.0", "50, 0": "2, 0", "seconds=3.0": "seconds=0.3"},
     "trees": {"...\n": "runner.tick()\n"},
 }
 """By page, what is run instead of what."""
@@ -138,6 +139,7 @@ BEFORE: dict[str, Callable[[], Mapping[str, object]]] = {
     "tournament": a_store,
     "tree_files": a_tree_file,
     "trees": a_runner,
+    "what_if": a_recording,
 }
 """By page, what puts the files there that its blocks read, and returns the names that they use."""
 
@@ -215,6 +217,7 @@ SHORTER = {
         "--workers",
         "0",
     ],
+    "what-if": ["--trials", "2", "--seconds", "0.3"],
     "train": ["--set", "steps=2000", "--set", "evaluation.starts=20", "--set", "evaluation.held_out=20"],
 }
 """By command, options that come last and so hold."""
@@ -227,6 +230,8 @@ LESS = {
     r"--runs \d+": "--runs 1",
     r"paper deployed": "paper deployed --shots 1 --only attack_main --defenders 0",
     r"--from 12\.5": "--from 1.5",
+    r"--at 61\.5": "--at 9.0",
+    r"--scan": "--scan --every 30 --moments 1",
     r"--from 10 --to 20": "--from 0.5 --to 1.5",
     r"\bFOLDER\b": str(DOCS.parent / "models" / "paper_shots.parquet"),
     r"\bMODEL\b": "models/score.pt",
@@ -284,6 +289,7 @@ FILES = {
     "recording": a_recording,
     "tournament": entrants,
     "trees": own_plays,
+    "what_if": a_recording,
 }
 """By page, what puts the files there that its commands read."""
 

@@ -45,6 +45,7 @@ _COMMANDS = {
     "compare": ("compare:compare", "Compare variants of a scenario, trial by trial."),
     "list": ("list_:list_", "List plays, skills, models, scenarios and more."),
     "show": ("show:show", "Show a play, scenario, model or recording."),
+    "what-if": ("what_if:what_if", "Play a moment of a match on with other decisions."),
     "train": ("train:train", "Train a skill by reinforcement learning."),
     "evaluate": ("evaluate:evaluate", "Judge trained policies on fresh starts."),
     "export": ("export:export", "Write a trained policy as a model file."),

@@ -134,7 +134,7 @@ def serve(
     *,
     line_up: LineUp,
     pictures: Pictures,
-    seconds: Annotated[float | None, option("--seconds", min=0.1)] = None,
+    seconds: Annotated[float | None, option("--seconds", "; by default on Ctrl-C", min=0.1)] = None,
     addresses: Addresses,
     in_step: Annotated[
         bool,
@@ -261,7 +261,7 @@ def _announce(server: SimServer) -> None:
 
 def log_packets(
     out: Annotated[Path, typer.Argument(help="The log to write (*.log, *.log.gz).")],
-    seconds: Annotated[float | None, option("--seconds", min=0.1)] = None,
+    seconds: Annotated[float | None, option("--seconds", "; by default on Ctrl-C", min=0.1)] = None,
     interface: Annotated[str | None, option("--interface", "; by default none")] = None,
     vision: Annotated[str, option("--vision", "; the port is 10006 on a real field")] = VISION,
     tracker: Annotated[str, option("--tracker")] = TRACKER,

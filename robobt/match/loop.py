@@ -14,6 +14,7 @@ from robobt.config.closing import Closing
 from robobt.config.process import OwnProcess
 from robobt.config.wording import counted
 from robobt.match.capture import MatchCapture
+from robobt.match.checkpoint import Checkpoint
 from robobt.match.ends import EndJudge, Outcome
 from robobt.match.lineup import Lineup, leave
 from robobt.match.players import Player, make_players, run_tree, shut_down
@@ -149,6 +150,10 @@ class MatchLoop(Closing):
     def capture(self) -> Capture:
         """Return the capture of every tick from now on, for recorders and viewers."""
         return self._captured.get()
+
+    def checkpoint(self, *others: object) -> Checkpoint:
+        """Return the present state of trees and line-ups, and of ``others``; the world's is not in it."""
+        return Checkpoint(self.players, self._lineups, self._kept, *others)
 
     def change_tree(self, player: Player, tree: Behaviour, play: str) -> None:
         """Let the robot of ``player`` play another tree from now on; ``play`` is the tree's name."""

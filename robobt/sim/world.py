@@ -84,8 +84,12 @@ class SimWorld(World):
         """
         check_placement(placement, self.field, self._ids)
         still = (0.0, 0.0)
+        turning = placement.turning
         poses = np.array(
-            [(*placement.robots[robot], *placement.velocities.get(robot, still), 0.0) for robot in self._ids],
+            [
+                (*placement.robots[robot], *placement.velocities.get(robot, still), turning.get(robot, 0.0))
+                for robot in self._ids
+            ],
             dtype=float,
         ).reshape(-1, 6)
         # A new space: the old one remembers the contacts of its last steps and would act on them.
@@ -93,9 +97,17 @@ class SimWorld(World):
         self._arenas.seed((seed,))
         ball = before_fronts(placement.ball, poses.tolist(), self.settings.body)
         self._arenas.place(poses[None], np.array([ball]))
+        if placement.slides or placement.flight != (0.0, 0.0):
+            x, y, vx, vy = ball
+            z, vz = placement.flight
+            self._arenas.place_ball(0, x, y, vx, vy, not placement.slides, z, vz)
+        if placement.commands:
+            at_rest = RobotCommand()
+            before = [command_row(placement.commands.get(robot, at_rest)) for robot in self._ids]
+            self._arenas.follow_before(np.arange(1), np.array(before).reshape(self._commands.shape))
         self._commands[:] = 0.0
         self._rng = np.random.default_rng(seed)
-        self._ticks = 0
+        self._ticks = round(placement.begin / self.period)
         self.kicks = []
         self._taken.clear()
         self._seen = None

@@ -23,12 +23,23 @@ class Placement:
     Attributes:
         robots: (x, y, heading) of each robot [m, m, rad].
         ball: (x, y, vx, vy) [m, m, m/s, m/s].
-        velocities: (vx, vy) of the robots that are not at rest [m/s]; only the simulator heeds it.
+        velocities: (vx, vy) of the robots that are not at rest [m/s]; only the simulator heeds this and what
+            follows.
+        turning: turning rates of robots [rad/s].
+        commands: commands that robots follow until their first one reaches them.
+        flight: height of the ball above the ground [m] and how fast it rises [m/s].
+        slides: whether a moving ball slides, as after a kick.
+        begin: time at the start [s].
     """
 
     robots: dict[RobotId, tuple[float, float, float]] = field(default_factory=dict)
     ball: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 0.0)
     velocities: dict[RobotId, tuple[float, float]] = field(default_factory=dict)
+    turning: dict[RobotId, float] = field(default_factory=dict)
+    commands: dict[RobotId, RobotCommand] = field(default_factory=dict)
+    flight: tuple[float, float] = (0.0, 0.0)
+    slides: bool = False
+    begin: float = 0.0
 
 
 class ReportedEvent(Protocol):

@@ -33,6 +33,56 @@ def test_it_starts_as_placed() -> None:
     assert frame.last_touch is None
 
 
+def test_it_goes_on_from_a_moment() -> None:
+    world = pair()
+    robots = {ME: (0.0, 0.0, 0.0), IT: (2.0, 2.0, 0.0)}
+    world.reset(
+        Placement(
+            robots,
+            (1.0, 1.0, 2.0, 0.0),
+            velocities={ME: (1.0, 0.5)},
+            turning={ME: 2.0},
+            flight=(0.3, 1.0),
+            begin=61.5,
+        ),
+        seed=1,
+    )
+    frame = world.truth()
+    me, ball = frame.own[0], frame.ball
+    assert frame.time == pytest.approx(61.5)
+    assert (me.vx, me.vy, me.omega) == (1.0, 0.5, 2.0)
+    assert (ball.z, ball.vz, ball.vx) == (0.3, 1.0, 2.0)
+    world.act({})
+    assert world.truth().time == pytest.approx(61.5 + 1 / 60)
+
+
+def test_a_ball_that_slides_at_the_start_slows_down_sooner() -> None:
+    speeds = {}
+    for slides in (False, True):
+        world = pair()
+        robots = {ME: (-3.0, 0.0, 0.0), IT: (-3.0, 2.0, 0.0)}
+        world.reset(Placement(robots, (0.0, 0.0, 4.0, 0.0), slides=slides), seed=1)
+        for _ in range(10):
+            world.act({})
+        speeds[slides] = world.truth().ball.vx
+    assert speeds[True] < speeds[False] - 0.2
+
+
+def test_late_robots_follow_the_commands_that_are_on_their_way() -> None:
+    settings = preset("default")
+    settings = settings.model_copy(update={"limits": settings.limits.model_copy(update={"dead_time": 0.1})})
+    speeds = {}
+    for commands in ({}, {ME: RobotCommand(vx=1.0)}):
+        world = SimWorld(DIVISION_B, {ME: None}, settings, 1 / 60)
+        start = Placement({ME: (0.0, 0.0, 0.0)}, velocities={ME: (1.0, 0.0)}, commands=commands)
+        world.reset(start, seed=1)
+        for _ in range(4):
+            world.act({})
+        speeds[len(commands)] = world.truth().own[0].vx
+    assert speeds[0] < 0.9
+    assert speeds[1] == pytest.approx(1.0, abs=0.02)
+
+
 @pytest.mark.parametrize("name", sorted(set(PRESETS) - {"erforce"}))
 def test_a_late_robot_keeps_the_ball_that_it_starts_with(name: str) -> None:
     """Placed inside a robot, as 98 mm are in front of grSim's, the ball would be pushed away meanwhile."""

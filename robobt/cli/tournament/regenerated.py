@@ -49,8 +49,9 @@ def regenerate_matches(
     from robobt.tournament.regenerate import differences, regenerate
 
     wanted = [match for match in matches if match.trace]
-    if not wanted:
-        raise typer.BadParameter("no match is left to play again", param_hint="--regenerate")
+    if not wanted and not as_json:
+        say("No such match.")
+        return
     make_folders({"--regenerate": folder}, folders=True)
     differing = differences(store, wanted)
     for line in differing:

@@ -55,6 +55,9 @@ class PassRater(Settings):
         0.12, ge=0, le=2, description="reaction time before an opponent moves to intercept [s]"
     )
     margin_scale: float = Field(0.4, gt=0, le=10, description="head start that gives a safety of 0.73 [s]")
+    receiver: int | None = Field(
+        None, ge=0, le=31, description="number of the only robot to pass to; by default any"
+    )
     ball: BallModel | None = Field(
         None, description="how the ball travels; by default the frame's ball model"
     )
@@ -131,7 +134,9 @@ class PassRater(Settings):
         able = [
             index
             for index, target in enumerate(targets)
-            if _may_receive(frame, target) and distance(origin, target) >= self.min_distance
+            if _may_receive(frame, target)
+            and distance(origin, target) >= self.min_distance
+            and self.receiver in (None, mates[index].id)
         ]
         if not able:
             return []

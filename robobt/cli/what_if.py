@@ -1,0 +1,318 @@
+"""``robobt what-if``: play moments of a logged match on with other decisions."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+from rich.markup import escape
+
+from robobt.cli.common import (
+    MAX_SEED,
+    Imports,
+    Json,
+    Progress,
+    console,
+    import_files,
+    one_of,
+    print_json,
+    say,
+    table,
+)
+from robobt.cli.option_groups.scenario import Blue, Yellow, with_teams
+from robobt.cli.options import option
+from robobt.cli.outputs import PAGE, RECORDING, check_ending, make_folders
+from robobt.config.extras import need
+
+if TYPE_CHECKING:
+    from robobt.what_if import Branches, DecisionFigures, Found, LoggedMatch
+    from robobt.what_if.compare import MeanEstimate
+    from robobt.world.game import Team
+
+
+@dataclass(frozen=True)
+class OtherPlays:
+    """What plays otherwise."""
+
+    blue: Blue = ""
+    yellow: Yellow = ""
+    imports: Imports = None
+
+
+@dataclass(frozen=True)
+class BranchOptions:
+    """How branches are played."""
+
+    seconds: Annotated[float, option("--seconds", " of a branch", min=0.1, max=60.0)] = 3.0
+    leave: Annotated[float, option("--leave", min=0.0, max=20.0)] = 0.3
+    simulator: Annotated[
+        str | None, option("--simulator", "; by default the match's, for a league log 'default'")
+    ] = None
+    seed: Annotated[int, option("--seed", min=0, max=MAX_SEED)] = 0
+
+    def branches(self, logged: LoggedMatch, plays: OtherPlays | None = None) -> Branches:
+        """Return what plays branches, of the log's plays or of other ones."""
+        from robobt.what_if import Branches
+
+        scenario = logged.scenario
+        if plays is not None:
+            scenario = with_teams(scenario, plays.blue, plays.yellow)
+        return Branches(logged, scenario, seconds=self.seconds, leave=self.leave)
+
+
+@dataclass(frozen=True)
+class Search:
+    """How a whole match is searched."""
+
+    scan: Annotated[bool, option("--scan")] = False
+    every: Annotated[float, option("--every", ", with --scan", min=0.05, max=60.0)] = 0.5
+    moments: Annotated[int, option("--moments", ", with --scan", min=1, max=1000)] = 5
+    begin: Annotated[float, option("--from", ", with --scan", min=0.0)] = 0.0
+    end: Annotated[float | None, option("--to", ", with --scan", min=0.0)] = None
+    out: Annotated[
+        Path | None, option("--out", " a replay of each moment, with --scan: a folder", metavar="FOLDER")
+    ] = None
+
+
+def what_if(
+    file: Annotated[
+        Path,
+        typer.Argument(metavar="LOG", help=f"A recording (*{RECORDING}), or a league log (*.log, *.log.gz)."),
+    ],
+    at: Annotated[float | None, option("--at", min=0.0)] = None,
+    trials: Annotated[
+        int, option("--trials", ": branches of each decision, with --scan of each moment listed", min=2)
+    ] = 100,
+    team: Annotated[str | None, option("--team", "; by default the team that decides otherwise")] = None,
+    record: Annotated[
+        Path | None, option("--record", ": the best decision's branch, with the log drawn beside it")
+    ] = None,
+    *,
+    plays: OtherPlays,
+    how: BranchOptions,
+    search: Search,
+    as_json: Json = False,
+) -> None:
+    """Play a moment of a logged match on, many times, with what was decided and with other decisions.
+
+    With --blue or --yellow that team plays otherwise from --at on. Without them the robot that has the ball
+    then decides otherwise: it shoots, passes to each team-mate, carries the ball on, or kicks it upfield. The
+    other team follows the log until the game has left it, then plays as it did or, in a league log, as
+    robobt's team. --scan looks for the moments at which another decision would have been worth most.
+
+    Branches differ by small errors of start and execution. A branch ends when play is stopped. Its expected
+    goals are those of its shots, and the chance of the best shot at its end, minus the opponents'.
+
+    Keys of --json: log, team, seconds, seed; with --at: at, decisions; each with name, trials, expected,
+    goals, gain and goals_gain (mean, low, high: 95 %; null for "nothing changed"), followed (seconds in the
+    log), and record (the file, or null); with --scan: moments, each with time, robot, decision, replay, and
+    unchanged and changed as decisions.
+    """
+    need("record", "pyarrow")
+    from robobt.what_if import load_logged
+
+    if search.scan == (at is not None):
+        raise typer.BadParameter("give either --at or --scan", param_hint="--at, --scan")
+    if search.scan and (plays.blue or plays.yellow or record is not None):
+        raise typer.BadParameter("goes with --at", param_hint="--blue, --yellow, --record")
+    if not search.scan and search.out is not None:
+        raise typer.BadParameter("goes with --scan; --record is for --at", param_hint="--out")
+    if team is not None:
+        one_of([team], ["blue", "yellow"], "--team")
+    if record is not None:
+        check_ending("--record", record, RECORDING, PAGE)
+    import_files(plays.imports)
+    logged = load_logged(file, how.simulator)
+    make_folders({"--record": record})
+    if search.scan:
+        _scan(logged, file, team, trials, how, search, as_json=as_json)
+    else:
+        assert at is not None
+        _at(logged, file, at, team, trials, plays, how, record, as_json=as_json)
+
+
+def _at(
+    logged: LoggedMatch,
+    file: Path,
+    at: float,
+    team: str | None,
+    trials: int,
+    plays: OtherPlays,
+    how: BranchOptions,
+    record: Path | None,
+    *,
+    as_json: bool,
+) -> None:
+    from robobt.what_if import compare_decisions
+    from robobt.what_if.compare import compared
+    from robobt.what_if.decisions import decisions_of
+    from robobt.world.game import Team
+
+    tick = logged.tick(at)
+    branches = how.branches(logged)
+    branches.begin(tick)
+    changed = [side for side in Team if getattr(plays, side.value)]
+    holder = branches.holder()
+    ours = _team(team, changed, holder and holder.team)
+    decisions = []
+    if not changed and holder is not None and holder.team is ours:
+        decisions = decisions_of(logged.recording.frame(tick), holder)
+    # In a league log nobody knows what the teams play, so "nothing changed" follows the log.
+    others = [side for side in Team if side not in (changed or [ours])]
+    follow = others if logged.known else list(Team)
+    with Progress("branches", trials * (1 + len(decisions) + bool(changed))) as progress:
+        unchanged, found = compare_decisions(
+            branches, decisions, ours, trials, how.seed, follow, progress.advance
+        )
+        if changed:
+            name = ", ".join([text for text in (plays.blue, plays.yellow) if text])
+            other = how.branches(logged, plays)
+            other.begin(tick)
+            with_them = [other.play(how.seed, trial, follow=others) for trial in range(trials)]
+            found.append(compared(name, with_them, unchanged, ours))
+            progress.advance(trials)
+    kept = None
+    if record is not None:
+        kept = record
+        best = max(found[1:], key=lambda one: one.gain.mean if one.gain else 0.0, default=None)
+        title = f"{logged.scenario.name} at {at:g} s: {best.name if best else found[0].name}"
+        played = how.branches(logged, plays if changed else None)
+        played.begin(tick)
+        decision = next((one for one in decisions if best is not None and one.name == best.name), None)
+        played.play(
+            how.seed, 0, follow=others, decision=decision, record=played.recording(str(record), title)
+        )
+    if as_json:
+        said = {"log": str(file), "team": ours.value, "seconds": how.seconds, "seed": how.seed, "at": at}
+        print_json({**said, "decisions": [one.to_json() for one in found], "record": kept and str(kept)})
+        return
+    say(
+        f"{file} at {at:g} s: {ours.value}'s goals in the next {how.seconds:g} s, minus the opponents', "
+        f"{trials} branches each"
+    )
+    _print(found)
+    if kept is not None:
+        say(f"Replay of a branch, with the log drawn beside it: {kept}")
+
+
+def _scan(
+    logged: LoggedMatch,
+    file: Path,
+    team: str | None,
+    trials: int,
+    how: BranchOptions,
+    search: Search,
+    *,
+    as_json: bool,
+) -> None:
+    from robobt.what_if import scan
+    from robobt.world.game import Team
+
+    ours = _team(team, [], Team.BLUE)
+    make_folders({"--out": search.out}, folders=True)
+    branches = how.branches(logged)
+    with Progress("branches", 1) as progress:
+        found = scan(
+            logged,
+            ours,
+            branches,
+            every=search.every,
+            count=search.moments,
+            trials=trials,
+            seed=how.seed,
+            begin=search.begin,
+            end=search.end,
+            on_branch=lambda done, planned: progress.name(f"branch {done} of {planned}"),
+        )
+    replays = [_replay(branches, logged, one, ours, how.seed, search.out) for one in found]
+    if as_json:
+        moments = [
+            {
+                "time": one.time,
+                "robot": str(one.decision.robot),
+                "decision": one.decision.name,
+                "replay": replay and str(replay),
+                "unchanged": one.unchanged.to_json(),
+                "changed": one.changed.to_json(),
+            }
+            for one, replay in zip(found, replays, strict=True)
+        ]
+        said = {"log": str(file), "team": ours.value, "seconds": how.seconds, "seed": how.seed}
+        print_json({**said, "moments": moments})
+        return
+    if not found:
+        say(f"{file}: no field player of {ours.value} has the ball in play.")
+        return
+    say(f"{file}: moments at which another decision of {ours.value} would have been worth most")
+    listed = table(
+        "time, s", "robot", "decision", "expected goals", "change (95 %)", "change of goals (95 %)"
+    )
+    for one in found:
+        assert one.changed.gain is not None
+        assert one.changed.goals_gain is not None
+        listed.add_row(
+            f"{one.time:.2f}",
+            str(one.decision.robot),
+            one.decision.name,
+            f"{one.unchanged.expected.mean:+.2f}",
+            _text(one.changed.gain),
+            _text(one.changed.goals_gain),
+        )
+    console.print(listed)
+    say(f"Figures from {trials} branches each that the search has not seen.")
+    if search.out is not None:
+        say(f"Replays, with the log drawn beside them: {search.out}")
+
+
+def _replay(
+    branches: Branches, logged: LoggedMatch, found: Found, team: Team, seed: int, folder: Path | None
+) -> Path | None:
+    """Record the branch that is nearest to the mean, and return where."""
+    if folder is None:
+        return None
+    folder.mkdir(parents=True, exist_ok=True)
+    name = found.decision.name.replace(" ", "_")
+    robot = found.decision.robot
+    path = folder / f"{found.time:07.2f}_{robot.team.value}_{robot.number}_{name}.html"
+    title = f"{logged.scenario.name} at {found.time:.2f} s: {robot} {found.decision.name}"
+    branches.begin(found.tick)
+    follow = [team.other] if logged.known else list(type(team))
+    branches.play(
+        seed,
+        found.typical,
+        follow=follow,
+        decision=found.decision,
+        record=branches.recording(str(path), title),
+    )
+    return path
+
+
+def _team(asked: str | None, changed: list[Team], holder: Team | None) -> Team:
+    from robobt.world.game import Team
+
+    if asked is not None:
+        return Team(asked)
+    if len(changed) == 1:
+        return changed[0]
+    return holder or Team.BLUE
+
+
+def _print(found: list[DecisionFigures]) -> None:
+    listed = table(
+        "decision", "expected goals (95 %)", "change (95 %)", "goals (95 %)", "change of goals (95 %)"
+    )
+    for one in found:
+        listed.add_row(
+            escape(one.name),
+            _text(one.expected),
+            "" if one.gain is None else _text(one.gain),
+            _text(one.goals),
+            "" if one.goals_gain is None else _text(one.goals_gain),
+        )
+    console.print(listed)
+
+
+def _text(estimate: MeanEstimate) -> str:
+    return f"{estimate.mean:+.2f} ({estimate.low:+.2f} to {estimate.high:+.2f})"

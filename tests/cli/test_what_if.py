@@ -1,0 +1,92 @@
+"""``robobt what-if``."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner, Result
+
+from robobt.cli import app
+from robobt.live.replay_html import is_replay
+from robobt.what_if import load_logged
+from robobt.what_if.scan import moments_of
+from robobt.world import Team
+from tests.what_if.made import recorded
+
+pytestmark = pytest.mark.integration
+
+
+@pytest.fixture(scope="module")
+def small(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return recorded(tmp_path_factory.mktemp("what_if"), 4.0)
+
+
+@pytest.fixture(scope="module")
+def time(small: Path) -> float:
+    """When a blue robot has the ball."""
+    logged = load_logged(small)
+    return float(logged.recording.times[moments_of(logged, Team.BLUE, 0.2)[1][0]])
+
+
+def invoke(*options: object) -> Result:
+    return CliRunner().invoke(app, ["what-if", *map(str, options)])
+
+
+def test_decisions_at_a_moment_are_compared_and_a_branch_is_recorded(small: Path, time: float) -> None:
+    page = small.with_name("branch.html")
+    done = invoke(small, "--at", time, "--trials", 3, "--seconds", 0.5, "--record", page, "--json")
+    assert done.exit_code == 0, done.output
+    said = json.loads(done.stdout)
+    assert (said["team"], said["seconds"], said["record"]) == ("blue", 0.5, str(page))
+    names = [one["name"] for one in said["decisions"]]
+    assert names[:2] == ["nothing changed", "shoot"]
+    assert said["decisions"][0]["gain"] is None
+    for one in said["decisions"][1:]:
+        assert one["trials"] == 3
+        assert one["gain"]["low"] <= one["gain"]["mean"] <= one["gain"]["high"]
+    assert is_replay(page)
+    assert "original" in page.read_text()
+
+
+def test_another_play_is_compared_with_what_played(small: Path, time: float) -> None:
+    options = (small, "--at", time, "--blue", "stand_still", "--trials", 3, "--seconds", 0.5)
+    said = json.loads(invoke(*options, "--json").stdout)
+    assert [one["name"] for one in said["decisions"]] == ["nothing changed", "stand_still"]
+    shown = invoke(*options)
+    assert "blue's goals in the next 0.5 s" in shown.output
+    assert "stand_still" in shown.output
+
+
+def test_a_match_is_searched_and_each_moment_has_a_replay(small: Path) -> None:
+    folder = small.with_name("moments")
+    options = ("--scan", "--trials", 2, "--moments", 2, "--every", 1.0, "--seconds", 0.3, "--to", 1.5)
+    done = invoke(small, *options, "--out", folder, "--json")
+    assert done.exit_code == 0, done.output
+    moments = json.loads(done.stdout)["moments"]
+    assert 1 <= len(moments) <= 2
+    for one in moments:
+        assert is_replay(Path(one["replay"]))
+        assert one["changed"]["trials"] == 2
+        assert one["robot"].startswith("blue ")
+
+
+@pytest.mark.parametrize(
+    ("options", "problem"),
+    [
+        ((), "give either --at or --scan"),
+        (("--scan", "--at", 1.0), "give either --at or --scan"),
+        (("--scan", "--blue", "stand_still"), "goes with --at"),
+        (("--at", 1.0, "--out", "moments"), "goes with --scan"),
+        (("--at", 1.0, "--team", "red"), "must be one of 'blue', 'yellow', not 'red'"),
+        (("--at", 99.0), "holds from 0 to"),
+        (("--at", 1.0, "--blue", "nobody"), "no play is called 'nobody'"),
+    ],
+)
+def test_what_cannot_be_played_is_told_in_one_line(
+    small: Path, options: tuple[object, ...], problem: str
+) -> None:
+    done = invoke(small, *options)
+    assert done.exit_code in (1, 2)
+    assert problem in " ".join(done.output.replace("│", " ").split())

@@ -1,0 +1,93 @@
+"""The search for moments: what it looks at, and figures that its own luck does not spoil."""
+
+from __future__ import annotations
+
+from statistics import fmean
+from typing import Any
+
+import numpy as np
+import pytest
+
+from robobt.what_if import Branch, Branches, LoggedMatch, decisions_of, scan
+from robobt.what_if.compare import MeanEstimate
+from robobt.what_if.scan import moments_of
+from robobt.world import Team
+
+pytestmark = pytest.mark.integration
+
+
+class Luck:
+    """Branches in which no decision changes anything but luck, except one."""
+
+    def __init__(self, logged: LoggedMatch, good: int = -1) -> None:
+        self.logged, self.good, self.tick = logged, good, 0
+        self.played: set[int] = set()
+
+    def begin(self, tick: int) -> None:
+        self.tick = tick
+
+    def play(self, seed: int, trial: int, *, follow: Any, decision: Any = None, record: Any = None) -> Branch:
+        del follow, record
+        name = "" if decision is None else decision.name
+        drawn = np.random.default_rng([seed, trial, self.tick, *name.encode()])
+        worth = 2.0 if self.tick == self.good and name == "carry" else 0.0
+        return Branch(
+            dict.fromkeys(Team, 0),
+            dict.fromkeys(Team, 0.0),
+            worth + float(drawn.normal(0.0, 0.5)),
+            (0.0, 0.0),
+            0.0,
+            3.0,
+        )
+
+
+def searched(branches: Any, seed: int, **options: Any) -> list[Any]:
+    given = {"every": 0.2, "count": 3, "trials": 20, "first": 2, "apart": 0.2, **options}
+    return scan(branches.logged, Team.BLUE, branches, seed=seed, **given)
+
+
+def test_moments_are_where_a_field_player_gets_and_keeps_the_ball(logged: LoggedMatch) -> None:
+    often, seldom = moments_of(logged, Team.BLUE, 0.1), moments_of(logged, Team.BLUE, 5.0)
+    assert {tick for tick, _ in seldom} <= {tick for tick, _ in often}
+    assert len(often) > len(seldom) >= 1
+    assert all(robot.team is Team.BLUE and robot.number != 0 for _, robot in often)
+    late = moments_of(logged, Team.BLUE, 0.1, begin=2.0, end=3.0)
+    assert all(2.0 <= logged.recording.times[tick] <= 3.0 for tick, _ in late)
+
+
+def test_the_decisions_are_a_shot_passes_to_mates_carrying_and_a_clearance(logged: LoggedMatch) -> None:
+    tick, robot = moments_of(logged, Team.BLUE, 0.2)[0]
+    mate = 2 if robot.number == 1 else 1
+    names = [one.name for one in decisions_of(logged.recording.frame(tick), robot)]
+    assert names == ["shoot", f"pass to {mate}", "carry", "clear"]
+
+
+def test_a_good_decision_is_found_first(logged: LoggedMatch) -> None:
+    there = moments_of(logged, Team.BLUE, 0.2)
+    good = there[len(there) // 2][0]
+    found = searched(Luck(logged, good), 1)
+    assert (found[0].tick, found[0].decision.name) == (good, "carry")
+    gain = found[0].changed.gain
+    assert gain.low < 2.0 < gain.high
+    times = [one.time for one in found]
+    assert all(abs(a - b) >= 0.2 for i, a in enumerate(times) for b in times[:i])
+
+
+def test_the_figures_of_the_best_of_many_are_not_their_luck(logged: LoggedMatch) -> None:
+    gains = [one.gain for seed in range(12) for one in searched(Luck(logged), seed)]
+    assert abs(fmean(gains)) < 0.1
+
+
+def test_equal_values_leave_room_for_what_was_not_seen() -> None:
+    none = MeanEstimate.of([0.0] * 100)
+    assert none.mean == 0.0
+    assert none.high == -none.low == pytest.approx(0.037, abs=1e-3)
+
+
+def test_a_real_search_repeats(logged: LoggedMatch) -> None:
+    branches = Branches(logged, seconds=0.3)
+    options = {"every": 2.0, "count": 1, "trials": 2, "first": 1}
+    first = searched(branches, 1, **options)
+    assert first == searched(branches, 1, **options)
+    assert first[0].changed.trials == 2
+    branches.close()
