@@ -30,7 +30,7 @@ PLANTED = Path(__file__).with_name("planted_mistake.py")
 TRIALS, OUTSIDE = 39, 2
 """Branches of a moment, and the rank from either end that bounds their 90 % interval: 36 of 40 gaps."""
 
-GOOD_CHANCE, EARLIEST = 0.1, 8.0
+GOOD_CHANCE, EARLIEST = 0.1, 20.0
 """Chance of a shot from which a robot that has the ball makes its mistake, and from when on [s]."""
 
 HELD = 0.2
@@ -206,7 +206,7 @@ def find_mistakes(
         play = {f"{robot}.play": f"{PLANTED}:mistaken_player", f"{robot}.at": at}
         logged = recorded(folder, changed(six_a_side(at + 6.0), play), seed)
         played = Branches(logged)
-        moments = scan(logged, Team.BLUE, played, every=1.0, count=4, trials=16, first=2, seed=seed)
+        moments = scan(logged, Team.BLUE, played, every=1.0, count=5, trials=12, first=2, seed=seed)
         played.close()
         near = [abs(one.time - at) <= FOUND_WITHIN for one in moments]
         place = near.index(True) + 1 if any(near) else 0

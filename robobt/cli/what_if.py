@@ -7,28 +7,25 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
-from rich.markup import escape
 
 from robobt.cli.common import (
     MAX_SEED,
     Imports,
     Json,
     Progress,
-    console,
     import_files,
     one_of,
     print_json,
     say,
-    table,
 )
 from robobt.cli.option_groups.scenario import Blue, Yellow, with_teams
 from robobt.cli.options import option
 from robobt.cli.outputs import PAGE, RECORDING, check_ending, make_folders
+from robobt.cli.shown.what_if import print_decisions, print_moments
 from robobt.config.extras import need
 
 if TYPE_CHECKING:
-    from robobt.what_if import Branches, DecisionFigures, Found, LoggedMatch
-    from robobt.what_if.compare import MeanEstimate
+    from robobt.what_if import Branches, Found, LoggedMatch
     from robobt.world.game import Team
 
 
@@ -105,10 +102,10 @@ def what_if(
     Branches differ by small errors of start and execution. A branch ends when play is stopped. Its expected
     goals are those of its shots, and the chance of the best shot at its end, minus the opponents'.
 
-    Keys of --json: log, team, seconds, seed; with --at: at, decisions; each with name, trials, expected,
+    Keys of --json: log, team, seconds, seed; with --at: at, decisions, each with name, trials, expected,
     goals, gain and goals_gain (mean, low, high: 95 %; null for "nothing changed"), followed (seconds in the
-    log), and record (the file, or null); with --scan: moments, each with time, robot, decision, replay, and
-    unchanged and changed as decisions.
+    log); really (expected and goals in the log), and record (the file, or null); with --scan: moments, each
+    with time, robot, decision, replay, and unchanged and changed as decisions.
     """
     need("record", "pyarrow")
     from robobt.what_if import load_logged
@@ -173,6 +170,7 @@ def _at(
             with_them = [other.play(how.seed, trial, follow=others) for trial in range(trials)]
             found.append(compared(name, with_them, unchanged, ours))
             progress.advance(trials)
+    really = branches.really()
     kept = None
     if record is not None:
         kept = record
@@ -186,13 +184,22 @@ def _at(
         )
     if as_json:
         said = {"log": str(file), "team": ours.value, "seconds": how.seconds, "seed": how.seed, "at": at}
-        print_json({**said, "decisions": [one.to_json() for one in found], "record": kept and str(kept)})
+        followed = {"expected": really.value(ours), "goals": really.lead(ours)}
+        print_json(
+            {
+                **said,
+                "really": followed,
+                "decisions": [one.to_json() for one in found],
+                "record": kept and str(kept),
+            }
+        )
         return
     say(
         f"{file} at {at:g} s: {ours.value}'s goals in the next {how.seconds:g} s, minus the opponents', "
         f"{trials} branches each"
     )
-    _print(found)
+    print_decisions(found)
+    say(f"In the log: {really.value(ours):+.2f} expected goals, {really.lead(ours):+d} goals")
     if kept is not None:
         say(f"Replay of a branch, with the log drawn beside it: {kept}")
 
@@ -246,21 +253,7 @@ def _scan(
         say(f"{file}: no field player of {ours.value} has the ball in play.")
         return
     say(f"{file}: moments at which another decision of {ours.value} would have been worth most")
-    listed = table(
-        "time, s", "robot", "decision", "expected goals", "change (95 %)", "change of goals (95 %)"
-    )
-    for one in found:
-        assert one.changed.gain is not None
-        assert one.changed.goals_gain is not None
-        listed.add_row(
-            f"{one.time:.2f}",
-            str(one.decision.robot),
-            one.decision.name,
-            f"{one.unchanged.expected.mean:+.2f}",
-            _text(one.changed.gain),
-            _text(one.changed.goals_gain),
-        )
-    console.print(listed)
+    print_moments(found)
     say(f"Figures from {trials} branches each that the search has not seen.")
     if search.out is not None:
         say(f"Replays, with the log drawn beside them: {search.out}")
@@ -297,22 +290,3 @@ def _team(asked: str | None, changed: list[Team], holder: Team | None) -> Team:
     if len(changed) == 1:
         return changed[0]
     return holder or Team.BLUE
-
-
-def _print(found: list[DecisionFigures]) -> None:
-    listed = table(
-        "decision", "expected goals (95 %)", "change (95 %)", "goals (95 %)", "change of goals (95 %)"
-    )
-    for one in found:
-        listed.add_row(
-            escape(one.name),
-            _text(one.expected),
-            "" if one.gain is None else _text(one.gain),
-            _text(one.goals),
-            "" if one.goals_gain is None else _text(one.goals_gain),
-        )
-    console.print(listed)
-
-
-def _text(estimate: MeanEstimate) -> str:
-    return f"{estimate.mean:+.2f} ({estimate.low:+.2f} to {estimate.high:+.2f})"

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping
 from contextlib import nullcontext
 from dataclasses import dataclass
-from math import cos, hypot, sin
 
 import numpy as np
 
@@ -25,11 +24,11 @@ from robobt.what_if.logged import LoggedMatch
 from robobt.what_if.pictured import BranchRecording
 from robobt.what_if.resumed import ResumedReferee
 from robobt.what_if.standing import standing
+from robobt.what_if.start import logged_start
 from robobt.world.answer import compensated
 from robobt.world.command import RobotCommand
 from robobt.world.field import FieldGeometry
 from robobt.world.game import STARTED, Team
-from robobt.world.protocol import Placement
 from robobt.world.rules import owner
 from robobt.world.state import Frame, RobotId
 from robobt.worlds import sim_world
@@ -39,9 +38,6 @@ WARM_UP = 1.0
 
 LEAVE = 0.3
 """Distance of the ball from its logged place from which the game has left the log [m]."""
-
-_SLIDE_TICKS = 5
-"""Number of ticks over which the ball's deceleration is measured."""
 
 
 @dataclass(slots=True, frozen=True)
@@ -137,7 +133,7 @@ class Branches:
             self._referee.watch(frame)
             self._figures.update(frame, frame.game)
             self._match.decide(recording.observation(before))
-        self._placement, self._holder = self._logged_placement(tick)
+        self._placement, self._holder = logged_start(self.logged.recording, tick)
         self._restored = self._match.checkpoint(self._referee, self._figures)
 
     def play(
@@ -268,40 +264,3 @@ class Branches:
             followed=followed * period,
             lasted=steps * period,
         )
-
-    def _logged_placement(self, tick: int) -> tuple[Placement, RobotId | None]:
-        """Return where everything is at a tick, and the robot that holds the ball."""
-        recording = self.logged.recording
-        rows, contact = recording.truth.robots[tick], recording.truth.contact[tick]
-        ball = recording.truth.ball[tick].tolist()
-        placement = Placement(begin=float(recording.times[tick]))
-        most_x, most_y = self._field.outer
-        holder = None
-        for slot, (robot, row) in enumerate(zip(self._robots, rows.tolist(), strict=True)):
-            x, y, heading, vx, vy, omega = row
-            if not np.isfinite(x):
-                placement.robots[robot] = (most_x - 0.2 - 0.2 * slot, most_y - 0.1, 0.0)
-                continue
-            placement.robots[robot] = (min(max(x, -most_x), most_x), min(max(y, -most_y), most_y), heading)
-            placement.velocities[robot], placement.turning[robot] = (vx, vy), omega
-            c, s = cos(heading), sin(heading)
-            given = recording.command(robot, max(0, tick - 1))
-            placement.commands[robot] = given or RobotCommand(c * vx + s * vy, c * vy - s * vx, omega)
-            if contact[slot]:
-                holder = robot
-        placement.ball = (ball[0], ball[1], ball[2], ball[3])
-        z, vz = (float(np.nan_to_num(value)) for value in ball[4:6])
-        placement.flight = (max(0.0, z), vz if z > 0.0 else 0.0)
-        placement.slides = holder is None and self._slides(tick)
-        return placement, holder
-
-    def _slides(self, tick: int) -> bool:
-        """Return whether the ball slows down as one that slides."""
-        first = tick - _SLIDE_TICKS
-        if first < 0 or self.logged.recording.truth.contact[first : tick + 1].any():
-            return False
-        ball, times = self.logged.recording.truth.ball, self.logged.recording.times
-        before, now = (hypot(float(ball[t, 2]), float(ball[t, 3])) for t in (first, tick))
-        model = self.logged.recording.header.ball_model
-        slowing = (before - now) / max(1e-9, float(times[tick] - times[first]))
-        return slowing > 0.5 * (model.slide_deceleration + model.roll_deceleration)

@@ -64,7 +64,8 @@ class BallDecision:
         started: list[float] = []
 
         def drive(view: Frame, me: RobotState) -> RobotCommand:
-            started.append(view.time)
+            if not started:
+                started.append(view.time)
             store.frame, store.me, store.command = view, me, RobotCommand()
             store.shot = store.pass_ = None
             status = runner.tick()

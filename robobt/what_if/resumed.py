@@ -4,8 +4,11 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import numpy as np
+
+from robobt.match.referee.automatic import AutomaticReferee
+from robobt.match.referee.controller import Controller
 from robobt.match.referee.events import Decision
-from robobt.match.referee.referee import Referee
 from robobt.match.referee.restarts import Resumption
 from robobt.match.referee.settings import RefereeSettings
 from robobt.world.field import FieldGeometry
@@ -16,8 +19,8 @@ from robobt.world.state import Frame
 class ResumedReferee:
     """Watches the log up to a moment, then referees from there.
 
-    It takes over the command, the restart, the score and the numbers of robots. It does not
-    know of fouls before the part of the log that it has watched, nor how long cards still last.
+    It takes over the command, the restart, the score and the cards. It does not know of fouls before the part
+    of the log that it has watched, nor how long cards still last.
 
     Args:
         field: the field.
@@ -25,20 +28,19 @@ class ResumedReferee:
     """
 
     def __init__(self, field: FieldGeometry, settings: RefereeSettings) -> None:
-        self._settings = settings
-        self._referee = Referee(field, settings.model_copy(update={"opening": "force_start"}))
+        self._settings = settings.model_copy(update={"opening": "force_start"})
+        self._automatic = AutomaticReferee(field, self._settings)
+        self._controller = Controller(field, self._settings, np.random.default_rng(0))
 
     def watch(self, frame: Frame) -> None:
         """Take in a logged frame with its state of the game."""
-        self._referee.automatic.watch(frame, frame.game)
+        self._automatic.watch(frame, frame.game)
 
     def begin(self, frame: Frame) -> GameState:
         """Take over the state of the game at the first frame of the branch, and return it."""
-        given = frame.game
-        self._referee.update(frame)
-        controller = self._referee.controller
-        assert controller is not None
-        state = controller.state
+        given, state = frame.game, self._controller.state
+        self._automatic.watch(frame, given)
+        self._controller.update(frame, ())
         state.stages.stage = given.stage
         for team, score in ((Team.BLUE, given.blue_score), (Team.YELLOW, given.yellow_score)):
             record, status = state.records[team], given.status(team)
@@ -55,10 +57,9 @@ class ResumedReferee:
             restart_team=given.restart_team,
             placement=given.placement,
         )
-        state.events = []
         state.tell()
-        return controller.game
+        return self._controller.game
 
     def update(self, frame: Frame) -> Decision:
         """Judge the next frame."""
-        return self._referee.update(frame)
+        return self._controller.update(frame, self._automatic.watch(frame, self._controller.game))

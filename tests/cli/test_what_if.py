@@ -43,6 +43,7 @@ def test_decisions_at_a_moment_are_compared_and_a_branch_is_recorded(small: Path
     names = [one["name"] for one in said["decisions"]]
     assert names[:2] == ["nothing changed", "shoot"]
     assert said["decisions"][0]["gain"] is None
+    assert set(said["really"]) == {"expected", "goals"}
     for one in said["decisions"][1:]:
         assert one["trials"] == 3
         assert one["gain"]["low"] <= one["gain"]["mean"] <= one["gain"]["high"]
