@@ -51,6 +51,7 @@ _HOMES = {
 }
 
 _ROOMS = (
+    "challenges",
     "engines",
     "identify",
     "league",

@@ -1,3 +1,4 @@
+from robobt import challenges as challenges
 from robobt import engines as engines
 from robobt import identify as identify
 from robobt import league as league

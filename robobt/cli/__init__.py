@@ -49,6 +49,7 @@ _COMMANDS = {
     "train": ("train:train", "Train a skill by reinforcement learning."),
     "evaluate": ("evaluate:evaluate", "Judge trained policies on fresh starts."),
     "export": ("export:export", "Write a trained policy as a model file."),
+    "challenge": ("challenge:challenge", "Play the league's challenges, and score them."),
     "serve": ("league:serve", "Serve a simulated field to other software."),
     "log": ("league:log_packets", "Write a log of a field's network traffic."),
 }

@@ -22,6 +22,7 @@ class ListedKind(StrEnum):
     MODELS = "models"
     SCENARIOS = "scenarios"
     TASKS = "tasks"
+    CHALLENGES = "challenges"
 
 
 def list_(
@@ -30,14 +31,14 @@ def list_(
     imports: Imports = None,
     as_json: Json = False,
 ) -> None:
-    """List plays, skills, raters, policies, models, scenarios or tasks.
+    """List plays, skills, raters, policies, models, scenarios, tasks or challenges.
 
     Skills and conditions are listed with what they read and write in the robot's store. Raters judge shots
     for SelectShot and others; policies drive GoToBall. A file names a rater or policy alone, or with its
     settings, as in rater: {name: expected_goal, threshold: 0.8}. 'robobt show NAME' shows one thing with
     all of it.
 
-    Keys of --json: the kind, a list. Of plays, skills, raters, policies and tasks each has name,
+    Keys of --json: the kind, a list. Of plays, skills, raters, policies, tasks and challenges each has name,
     description, parameters (name, type, required, default), package (the distribution it came with, null for
     robobt's own and imported files') and, for skills, reads, writes and condition (whether it is one). Of
     models: file, format, size (bytes), sha256, listed (whether the manifest beside it lists it) and card. Of

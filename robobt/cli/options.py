@@ -23,6 +23,7 @@ MEANINGS = {
     "--by": "Who plays: skill (written by hand) or script (the simplest solution)",
     "--cameras": "How many cameras share the field",
     "--candidates": "How many sets of parameters to try",
+    "--check": "Play each row again and compare the hashes",
     "--clock": "What timestamps count from: sim is the start, as in grSim; unix is 1970, as in real cameras",
     "--compare": "Compare two entrants: their own matches, and those against opponents that both met",
     "--concurrent": "How many candidates play at a time",

@@ -15,6 +15,7 @@ from robobt.cli.common import console, print_json, unknown, warn
 if TYPE_CHECKING:
     from pydantic.fields import FieldInfo
 
+    from robobt.challenges import Challenge
     from robobt.learning.envs.arena_task import ArenaTask
     from robobt.skills.base import Skill
     from robobt.tree.parameters import Parameter
@@ -62,6 +63,16 @@ def _tasks() -> Registry[Any]:
     from robobt.learning import TASKS
 
     return TASKS
+
+
+def _challenges() -> Registry[Any]:
+    from robobt.challenges import CHALLENGES
+
+    return CHALLENGES
+
+
+def _challenge(cls: type[Challenge]) -> _Listed:
+    return _Listed(f"{_doc(cls)}\n\nRules: {cls.source}", [])
 
 
 def _play(play: Callable[..., object]) -> _Listed:
@@ -142,6 +153,7 @@ _KINDS = {
     "raters": _Listing(_raters, _with_settings),
     "policies": _Listing(_policies, _with_settings),
     "tasks": _Listing(_tasks, _task),
+    "challenges": _Listing(_challenges, _challenge),
 }
 REGISTERED = tuple(_KINDS)
 """The kinds of things that are registered by name."""

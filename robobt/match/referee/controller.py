@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
@@ -14,7 +15,7 @@ from robobt.match.referee.requests import Requests
 from robobt.match.referee.restarts import PLACEMENT_COMMANDS, PREPARE, goal_kick, kickoff, penalty
 from robobt.match.referee.settings import RefereeSettings
 from robobt.match.referee.state import MatchState
-from robobt.match.referee.verdicts import HIGHEST_GOAL, PENALTY_BREACHES, resumption_after
+from robobt.match.referee.verdicts import HIGHEST_GOAL, PENALTY_BREACHES, After, resumption_after
 from robobt.world.field import FieldGeometry
 from robobt.world.game import GameState, RefereeCommand, Restart, Stage, Team
 from robobt.world.geometry import Point, distance
@@ -36,8 +37,7 @@ _PLACING, _PREPARING = frozenset(PLACEMENT_COMMANDS.values()), frozenset(PREPARE
 class Controller:
     """Decides the state of the game; the same frames and events give the same decisions.
 
-    Blue always defends -x, also in the second half. Human decisions are left out: challenges, forced
-    time-outs, robots taken off the field by hand.
+    Blue always defends -x. What people decide is left out: challenges, forced time-outs, robots taken off.
 
     Args:
         field: the field, which tells the division.
@@ -47,6 +47,7 @@ class Controller:
     Attributes:
         state: the state of the match.
         requests: the teams' requests.
+        after: returns the restart after an event, None if play goes on; by default as in the rules.
     """
 
     def __init__(
@@ -55,6 +56,7 @@ class Controller:
         self.state = MatchState(field, settings, generator)
         self.requests = Requests(self.state)
         self._settings, self._field, self._generator = settings, field, generator
+        self.after: After = partial(resumption_after, field)
         self._place: Point | None = None
         self._begun = False
 
@@ -114,7 +116,7 @@ class Controller:
             self._stop_after(event)
 
     def _stop_after(self, event: RefereeEvent) -> None:
-        resumption = resumption_after(self._field, event, self.state.ball)
+        resumption = self.after(event, self.state.ball)
         if resumption is not None:
             self.state.stop(resumption)
 
@@ -175,7 +177,7 @@ class Controller:
         if state.game.command is not RefereeCommand.STOP:
             return
         record.too_close += 1
-        resumption = resumption_after(self._field, event, state.ball)
+        resumption = self.after(event, state.ball)
         if resumption is not None and state.following.restart not in (Restart.KICKOFF, Restart.PENALTY):
             state.following = resumption
             state.placing.begin(resumption)

@@ -5,16 +5,20 @@ Source of the rules: RoboCup SSL rules of 2026.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from zlib import crc32
 
 import numpy as np
 
 from robobt.match.referee.automatic import AutomaticReferee
 from robobt.match.referee.controller import Controller
-from robobt.match.referee.events import Decision
+from robobt.match.referee.events import Decision, RefereeEvent
+from robobt.match.referee.restarts import Resumption
 from robobt.match.referee.settings import RefereeSettings
+from robobt.match.referee.verdicts import resumption_after
 from robobt.world.field import FieldGeometry
 from robobt.world.game import GameState, RefereeCommand, Stage, Team
+from robobt.world.geometry import Point
 from robobt.world.state import Frame
 
 _BEFORE = GameState(RefereeCommand.HALT, stage=Stage.NORMAL_FIRST_HALF_PRE, may_touch=False, placement=None)
@@ -55,9 +59,23 @@ class Referee:
         if self.controller is None:
             lot = np.random.default_rng(crc32(frame.packed()))
             self.controller = Controller(self.field, self.settings, lot)
+            self.controller.after = self.resumption_after
             self.automatic.watch(frame, self.game)
             return self.controller.update(frame, ())
-        return self.controller.update(frame, self.automatic.watch(frame, self.game))
+        return self.controller.update(frame, self.watch(frame))
+
+    def watch(self, frame: Frame) -> Sequence[RefereeEvent]:
+        """Return the events in the next frame; competitions with other rules override this."""
+        return self.automatic.watch(frame, self.game)
+
+    def resumption_after(self, event: RefereeEvent, ball: Point) -> Resumption | None:
+        """Return the restart after an event that stops play, else None; other rules override this.
+
+        Args:
+            event: the event while the ball was in play.
+            ball: the ball's position now [m].
+        """
+        return resumption_after(self.field, event, ball)
 
     def close(self) -> None:
         """Do nothing, as there is nothing to close; see :class:`robobt.match.refereeing.MatchReferee`."""

@@ -6,6 +6,8 @@ controller was seen to do.
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 from robobt.match.referee.events import EventKind, RefereeEvent
 from robobt.match.referee.restarts import (
     Resumption,
@@ -77,6 +79,9 @@ FOUL_MEMORY = 2.0
 
 HIGHEST_GOAL = 0.15
 """Greatest height of the ball since its scorers touched it [m]. Source: SSL rules."""
+
+After = Callable[[RefereeEvent, Point], Resumption | None]
+"""Returns the restart after an event, given the ball's position, or None if play goes on."""
 
 
 def resumption_after(field: FieldGeometry, event: RefereeEvent, ball: Point) -> Resumption | None:

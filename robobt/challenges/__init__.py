@@ -1,0 +1,8 @@
+"""The league's technical challenges, played and scored by its rules."""
+
+from robobt.challenges.challenge import CHALLENGES as CHALLENGES
+from robobt.challenges.challenge import Challenge as Challenge
+from robobt.challenges.challenge import ChallengeAttempt as ChallengeAttempt
+from robobt.challenges.challenge import Figures as Figures
+from robobt.challenges.challenge import Judge as Judge
+from robobt.challenges.passing import Passing as Passing

@@ -1,0 +1,1 @@
+"""Plays for the league's technical challenges."""

@@ -1,0 +1,78 @@
+"""A player of a team that only passes, for the passing challenge."""
+
+from __future__ import annotations
+
+from robobt.plays.base import PLAYS, first_of, when
+from robobt.plays.team_player import PASS_TOLERANCE, let_go
+from robobt.skills.ball.go_to_ball import GoToBall
+from robobt.skills.ball.kick_loose import KickLoose
+from robobt.skills.ball.kick_to_target import KickToTarget
+from robobt.skills.ball.pick_up_ball import PickUpBall
+from robobt.skills.ball.settle_ball import SettleBall
+from robobt.skills.conditions.may_touch_ball import MayTouchBall
+from robobt.skills.defence.avoid_crash import AvoidCrash
+from robobt.skills.restarts.go_to_kickoff_position import GoToKickoffPosition
+from robobt.skills.restarts.keep_distance import KeepDistance
+from robobt.skills.restarts.prepare_restart import PrepareRestart
+from robobt.skills.stop import Stop
+from robobt.skills.tactics.choose_safe_pass import ChooseSafePass
+from robobt.skills.tactics.receive_pass import ReceivePass
+from robobt.skills.tactics.show_for_pass import ShowForPass
+from robobt.skills.tactics.task_switch import TaskSwitch
+from robobt.skills.tactics_settings import TacticsSettings
+from robobt.tree import Behaviour, Sequence
+
+
+@PLAYS.register("pass_player")
+def pass_player(
+    *, enough: float = 0.6, patience: float = 1.0, quickest: float = 2.0, reaction: float = 0.25
+) -> Behaviour:
+    """Keep the ball in the team by passes of at least 1.15 m, and never shoot, within the referee's commands.
+
+    Any number of robots may play it; it needs no goalkeeper.
+
+    Args:
+        enough: worth of a pass that is played at once, 0 to 1.
+        patience: time in which that falls to almost nothing [s].
+        quickest: highest speed and acceleration assumed of opponents [m/s, m/s^2].
+        reaction: reaction time assumed of opponents to a kick [s].
+    """
+
+    def choose() -> ChooseSafePass:
+        return ChooseSafePass(enough=enough, patience=patience)
+
+    attack = first_of(
+        "keep the ball",
+        let_go(),
+        KickLoose(),
+        ReceivePass(redirect_at=1.0),
+        SettleBall(),
+        when("pass", choose(), KickToTarget(take=True, pass_tolerance=PASS_TOLERANCE)),
+        when("get the ball", GoToBall(), PickUpBall()),
+    )
+    restart = first_of(
+        "restart",
+        Sequence(
+            "take it",
+            memory=True,
+            children=[MayTouchBall(), choose(), KickToTarget(pass_tolerance=PASS_TOLERANCE)],
+        ),
+        PrepareRestart(stay=True),
+    )
+    player = TaskSwitch(
+        "part",
+        {
+            "halt": Stop(),
+            "take_restart": restart,
+            "kickoff": GoToKickoffPosition(spare_mates=True),
+            "dead_ball": first_of(
+                "ball is dead",
+                when("ours", MayTouchBall(), ShowForPass()),
+                when("keep away", KeepDistance(), ShowForPass()),
+            ),
+            "attack": attack,
+        },
+        otherwise=ShowForPass(),
+        tactics=TacticsSettings(quickest=quickest, reaction=reaction),
+    )
+    return AvoidCrash("no crash", player)

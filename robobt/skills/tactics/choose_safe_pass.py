@@ -1,0 +1,107 @@
+"""Choose the pass after which the team most likely still has the ball."""
+
+from __future__ import annotations
+
+from dataclasses import field
+from math import hypot, pi
+
+import numpy as np
+
+from robobt.skills.base import Skill, skill
+from robobt.skills.rate_limit import RateLimit
+from robobt.skills.store import Pass
+from robobt.skills.tactics.agree import agree
+from robobt.skills.tactics.keeping import SHORTEST, KeepingPlaces, rate_receptions, worth_of
+from robobt.tree import Status
+from robobt.world.rules import has_ball
+
+
+@skill
+class ChooseSafePass(Skill):
+    """Write the safest pass to ``pass_``, and None to ``shot``. FAILURE while none is good enough.
+
+    A pass is worth its chance to arrive times how free its receiver then is. What is good enough falls with
+    the time that the robot has had the ball; an opponent close by ends the waiting.
+
+    Args:
+        enough: worth from which a pass is played at once, 0 to 1.
+        least: worth below which no pass is played.
+        patience: time in which ``enough`` falls to ``least`` [s].
+        pressed: distance of an opponent from the ball that ends the waiting [m].
+        every: time between two ratings [s].
+        keep: factor on the worth of a pass to the receiver that was chosen last.
+
+    Raises:
+        ValueError: ``patience`` is not positive.
+    """
+
+    reads = ("team",)
+    writes = ("team", "shot", "pass_")
+
+    enough: float = 0.6
+    least: float = 0.05
+    patience: float = 1.0
+    pressed: float = 0.45
+    every: float = 0.05
+    keep: float = 1.25
+    _pass: Pass | None = field(default=None, init=False)
+    _since: float = field(default=0.0, init=False)
+    _seen: float = field(default=-10.0, init=False)
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if not self.patience > 0.0:
+            raise ValueError(f"patience must be positive, not {self.patience}")
+        self._look = RateLimit(self.every)
+
+    def on_running(self) -> Status:
+        """Rate the passes."""
+        frame, store = self.frame, self.store
+        plan = agree(frame, store.team)
+        if frame.time - self._seen > plan.tactics.anew_after or not frame.game.may_touch:
+            self._pass, self._since = None, frame.time
+        self._seen = frame.time
+        if self._look.due(frame.time):
+            self._choose()
+        store.shot, store.pass_ = None, self._pass
+        plan.next_pass = self._pass
+        if self._pass is None:
+            return self.fail("no pass is good enough")
+        plan.next_pass_time = frame.time
+        return self.succeed(f"pass to {self._pass.receiver}, {self._pass.score:.2f}")
+
+    def _choose(self) -> None:
+        frame, me, ball, team = self.frame, self.me, self.ball, self.store.team
+        plan, last = team.plan, self._pass
+        self._pass = None
+        places = team.shared(KeepingPlaces)
+        places.follow(frame, team, plan)
+        points, owners = [], []
+        for mate in frame.teammates(me.id):
+            x, y = mate.x + 0.2 * mate.vx, mate.y + 0.2 * mate.vy
+            place = places.places.get(mate.id, (x, y))
+            gap = hypot(place[0] - x, place[1] - y)
+            share = min(1.0, 0.5 / gap) if gap > 0.0 else 0.0
+            for part in (0.0, 0.5, 1.0):
+                point = (x + part * share * (place[0] - x), y + part * share * (place[1] - y))
+                if hypot(point[0] - ball.x, point[1] - ball.y) >= SHORTEST and frame.field.contains(
+                    *point, -0.2
+                ):
+                    points.append(point)
+                    owners.append(mate.id)
+        if not points:
+            return
+        at = np.array(points)
+        turn = np.abs((np.arctan2(at[:, 1] - ball.y, at[:, 0] - ball.x) - me.heading + pi) % (2.0 * pi) - pi)
+        rated = rate_receptions(at, ball.x, ball.y, 0.15, plan.their_movers, plan.numbers)
+        worth = worth_of(rated) * (1.0 - 0.1 * turn / pi)
+        if last is not None:
+            worth = worth * np.where(np.array(owners) == last.receiver, self.keep, 1.0)
+        best = int(worth.argmax())
+        held = has_ball(me, ball)
+        waited = min(1.0, (frame.time - self._since) / self.patience)
+        enough = self.least + (self.enough - self.least) * (1.0 - waited)
+        if held and any(hypot(r.x - ball.x, r.y - ball.y) < self.pressed for r in frame.opponents):
+            enough = self.least
+        if worth[best] >= enough:
+            self._pass = Pass(owners[best], points[best], float(rated[best, 1]), float(worth[best]), 0.0)

@@ -1,0 +1,61 @@
+"""``robobt challenge``: rows, recordings, and the table of results."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner
+
+from robobt.cli import app
+
+QUICK = ("--trials", "2", "--workers", "1", "--set", "ends.time_limit=0.3")
+
+
+def run(*options: object, code: int = 0) -> str:
+    shown = CliRunner().invoke(app, [str(option) for option in options])
+    assert shown.exit_code == code, shown.output
+    return shown.output
+
+
+@pytest.mark.integration
+def test_rows_are_kept_and_repeat_bit_for_bit(tmp_path: Path) -> None:
+    out = tmp_path / "kept"
+    said = json.loads(
+        run("challenge", "passing", "--blue", "ours", "--blue", "chance", *QUICK, "--out", out, "--json")
+    )
+    assert [row["entrant"] for row in said["rows"]] == ["ours", "chance"]
+    assert said["rows"][1]["blue"] == "stand_still"
+    assert [Path(file).name for file in said["recordings"]["ours"]["best"]] == [
+        "passing-ours-best-match.robobt.arrows"
+    ]
+    table = out / "results.jsonl"
+    again = json.loads(run("challenge", "table", table, "--check", "--workers", "1", "--json"))
+    assert again["rows"] == said["rows"]
+    assert again["repeated"] == [True, True]
+    text = table.read_text()
+    table.write_text(text.replace(said["rows"][0]["trace"], "0" * 32))
+    shown = run("challenge", "table", table, "--check", "--workers", "1", code=1)
+    assert "differs" in shown
+    assert "equal" in shown
+
+
+def test_realism_and_a_changed_delay_go_together() -> None:
+    given = ("--realism", "realistic", "--set", "simulator.realism.command_delay=0.065", "--trials", "1")
+    said = json.loads(run("challenge", "passing", *given, "--set", "ends.time_limit=0.1", "--json"))
+    realism = said["rows"][0]["settings"]
+    assert realism["simulator.realism"]["ball_noise"] == 0.0014
+    assert realism["simulator.realism.command_delay"] == 0.065
+
+
+def test_what_does_not_fit_is_refused() -> None:
+    assert "no challenge is called 'passin'" in run("challenge", "passin", code=2)
+    assert "needs a file of results" in run("challenge", "table", code=2)
+    assert "is for 'robobt challenge table'" in run("challenge", "passing", "--check", code=2)
+    assert "no play is called 'nobody'" in run("challenge", "passing", "--blue", "nobody", code=1)
+
+
+def test_challenges_are_listed_with_their_rules() -> None:
+    shown = run("list", "challenges")
+    assert "passing" in shown
