@@ -5,4 +5,6 @@ from robobt.challenges.challenge import Challenge as Challenge
 from robobt.challenges.challenge import ChallengeAttempt as ChallengeAttempt
 from robobt.challenges.challenge import Figures as Figures
 from robobt.challenges.challenge import Judge as Judge
+from robobt.challenges.obstacles import Obstacles as Obstacles
+from robobt.challenges.obstacles import ObstaclesUnseen as ObstaclesUnseen
 from robobt.challenges.passing import Passing as Passing

@@ -11,11 +11,12 @@ import json
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
+from statistics import fmean
 
 from pydantic import ConfigDict, TypeAdapter, ValidationError
 
 from robobt import __version__
-from robobt.challenges.challenge import CHALLENGES
+from robobt.challenges.challenge import CHALLENGES, Figures
 from robobt.challenges.run import ChallengeEntry, RunResult, play_runs
 from robobt.config.commit import source_commit
 from robobt.config.errors import RobobtError
@@ -46,7 +47,7 @@ class Row:
         score: their mean.
         low, high: 95 % interval of the mean (Student); None with fewer than two different runs.
         unit: what the score counts.
-        figures: means of all that was counted, by name.
+        figures: means of all that was counted, by name, each over the runs that have it.
         trace: hash over the true states of all runs; equal for equal runs.
         robobt: version of robobt.
         commit: commit of the code, followed by "+" if files were changed since; empty if unknown.
@@ -108,18 +109,21 @@ def row_of(entry: ChallengeEntry, entrant: str, seed: int, results: Sequence[Run
         settings=entry.settings or {},
         seed=seed,
         scores=scores,
-        score=sum(scores) / len(scores),
+        score=fmean(scores),
         low=low,
         high=high,
         unit=challenge.unit,
-        figures={
-            name: sum(result.figures[name] for result in results) / len(results)
-            for name in results[0].figures
-        },
+        figures=_means([result.figures for result in results]),
         trace=trace_of(results),
         commit=source_commit(),
         source=challenge.source,
     )
+
+
+def _means(figures: Sequence[Figures]) -> dict[str, float]:
+    """Return the mean of each figure over the runs that have it."""
+    names = dict.fromkeys(name for one in figures for name in one)
+    return {name: fmean(one[name] for one in figures if name in one) for name in names}
 
 
 def trace_of(results: Sequence[RunResult]) -> str:
