@@ -21,7 +21,10 @@ from robobt.plays.baselines.team_2026_11 import defender_2026_11 as defender_202
 from robobt.plays.baselines.team_2026_11 import field_player as field_player
 from robobt.plays.baselines.team_2026_11 import field_player_2026_11 as field_player_2026_11
 from robobt.plays.baselines.team_2026_11 import goalkeeper_2026_11 as goalkeeper_2026_11
+from robobt.plays.challenges.carry_to_spot import carry_to_spot as carry_to_spot
+from robobt.plays.challenges.gate_run import gate_run as gate_run
 from robobt.plays.challenges.obstacle_run import obstacle_run as obstacle_run
+from robobt.plays.challenges.pass_and_score import pass_and_score as pass_and_score
 from robobt.plays.challenges.pass_player import pass_player as pass_player
 from robobt.plays.go_to_ball_and_shoot import go_to_ball_and_shoot as go_to_ball_and_shoot
 from robobt.plays.goalkeeper import fitted_goalkeeper as fitted_goalkeeper

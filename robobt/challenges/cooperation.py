@@ -1,0 +1,149 @@
+"""The cooperation challenge of 2026: two robots of different teams score a goal together, quickly."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import ClassVar
+
+import numpy as np
+
+from robobt.challenges.challenge import CHALLENGES, Challenge, ChallengeAttempt, Figures
+from robobt.match.referee.automatic import AutomaticReferee
+from robobt.match.referee.settings import RefereeSettings
+from robobt.match.referee.verdicts import FOULS
+from robobt.match.scenario.scenario import scenario_from
+from robobt.world.field import DIVISION_B
+from robobt.world.game import GameState, Team
+from robobt.world.rules import area_distance, in_their_defense_area, scorer, touches
+from robobt.world.state import ROBOT_RADIUS, BallState, Frame, RobotId
+
+TRY_TIME = 30.0
+"""Time limit of a try [s]. Source: the challenge's rules of 2026."""
+
+FAST_BALL, FAST_ROBOT, HIGH_BALL = 3.5, 2.5, 0.1
+"""Most speed of ball and robots [m/s], and most height of the ball [m]. Source: as above."""
+
+MAJOR, JUNIOR = RobotId(Team.BLUE, 0), RobotId(Team.BLUE, 1)
+"""The robots of the Small Size League and of the junior league."""
+
+_JUNIOR_STARTS = 0.1
+"""Speed from which a robot does not stay still [m/s]."""
+
+_OVER_SPEED = 0.05
+"""How much faster than allowed counts as measured wrongly [m/s]."""
+
+
+class CooperationJudge:
+    """Counts the points of one try.
+
+    Source: the challenge's rules of 2026. The junior robot stays still until the other has shot the ball,
+    then shoots it into the goal. It earns 6 points for a touch, 4 for one in the attacked half, 6 for a shot
+    into the penalty area, 10 for the goal, and 10 each for a goal within 15 and 20 s. A wrong order costs 4
+    points, every other broken rule 1 point. A chip above 0.1 m ends the try without points.
+    """
+
+    def __init__(self) -> None:
+        self.earned: dict[str, float] = {}
+        self.broken: set[str] = set()
+        self.time: float | None = None
+        self._shot = False
+        self._before: BallState | None = None
+        self._automatic = AutomaticReferee(DIVISION_B, RefereeSettings(max_ball_speed=FAST_BALL))
+
+    def see(self, frame: Frame, game: GameState) -> bool:
+        """Take in the next true ``frame`` and the ``game`` there; return whether the try is over."""
+        ball, robots, last = frame.ball, frame.robots(), frame.last_touch
+        junior = robots[JUNIOR]
+        if not self._shot:
+            self._shot = last == MAJOR and not touches(robots[MAJOR], ball) and ball.speed > _JUNIOR_STARTS
+            if junior.speed > _JUNIOR_STARTS and not self._shot:
+                self.broken.add("order")
+        if last == JUNIOR:
+            self.earned["touch"] = 6.0
+            if touches(junior, ball) and ball.x > 0.0:
+                self.earned["touch ahead"] = 4.0
+            if in_their_defense_area(frame.field, ball.x, ball.y) and not touches(junior, ball):
+                self.earned["into the area"] = 6.0
+        for event in self._automatic.watch(frame, game):
+            if event.team is Team.BLUE and event.kind in FOULS:
+                self.broken.add(event.kind.value)
+        if any(robot.speed > FAST_ROBOT + _OVER_SPEED for robot in frame.own):
+            self.broken.add("fast robot")
+        if any(
+            area_distance(frame.field, team, robot.x, robot.y) < ROBOT_RADIUS
+            for team in Team
+            for robot in frame.own
+        ):
+            self.broken.add("robot in a defence area")
+        if ball.z > HIGH_BALL:
+            self.broken.add("chip")
+            return True
+        scored = self._before is not None and scorer(frame.field, self._before, ball) is Team.BLUE
+        self._before = ball
+        if scored and last == JUNIOR:
+            self.time = round(frame.time, 1)
+            self.earned["goal"] = 10.0
+            self.earned["in 15 s"] = 10.0 if self.time <= 15.0 else 0.0
+            self.earned["in 20 s"] = 10.0 if self.time <= 20.0 else 0.0
+        return scored
+
+    def figures(self) -> Figures:
+        """Return the points, the goal (0 or 1), how many rules were broken, and the time of the goal [s]."""
+        cost = sum(4.0 if what == "order" else 1.0 for what in self.broken)
+        points = 0.0 if "chip" in self.broken else max(0.0, sum(self.earned.values()) - cost)
+        goal = float(self.time is not None)
+        told = {"points": points, "goals": goal, "broken rules": float(len(self.broken))}
+        return told if self.time is None else {**told, "time": self.time}
+
+
+@CHALLENGES.register("cooperation")
+class Cooperation(Challenge):
+    """One robot passes, the other shoots the goal, within 15 s; the best three of five tries count.
+
+    Both robots are robobt's, as the simulator has no junior robot; blue plays what yellow plays in the rules.
+    """
+
+    title = "A goal by two robots together, the best three of five tries"
+    source = "RoboCup 2026 SSL RCJ Cooperation Challenge, RoboCup-SSL/technical-challenge-rules c5e6bfd"
+    unit = "points"
+    most = 138.0
+    entrants: ClassVar[Mapping[str, str]] = {
+        "ours": "pass_and_score",
+        "november": "field_player_2026_11",
+        "script": "go_to_ball_and_shoot",
+        "chance": "stand_still",
+    }
+
+    def attempts(self, generator: np.random.Generator) -> Sequence[ChallengeAttempt]:  # noqa: ARG002
+        """Return five tries."""
+        limits = {"max_speed": FAST_ROBOT}
+        places = {MAJOR: [-2.5, 1.0], JUNIOR: [-0.5, -2.0]}
+        scenario = scenario_from(
+            {
+                "name": "cooperation",
+                "description": self.title,
+                "period": 1.0 / 60.0,
+                "robots": {
+                    "blue": [
+                        {
+                            "number": robot.number,
+                            "play": "stand_still",
+                            "limits": limits,
+                            "start": {"position": {"center": at, "radius": 0.05}, "heading": "towards ball"},
+                        }
+                        for robot, at in places.items()
+                    ]
+                },
+                "ball": {"position": [-1.5, 0.0]},
+                "ends": {"time_limit": TRY_TIME},
+            },
+            "cooperation",
+        )
+        return [ChallengeAttempt(str(number), scenario, CooperationJudge) for number in range(1, 6)]
+
+    def score(self, attempts: Sequence[Figures]) -> Figures:
+        """Return the points of the best three tries, and how many goals and broken rules all five had."""
+        best = sorted((one["points"] for one in attempts), reverse=True)[:3]
+        told = {name: sum(one[name] for one in attempts) for name in ("goals", "broken rules")}
+        times = sorted(one["time"] for one in attempts if "time" in one)
+        return {"points": sum(best), **told, **({"fastest": times[0]} if times else {})}
