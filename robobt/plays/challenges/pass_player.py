@@ -25,7 +25,7 @@ from robobt.tree import Behaviour, Sequence
 
 @PLAYS.register("pass_player")
 def pass_player(
-    *, enough: float = 0.6, patience: float = 1.0, quickest: float = 2.0, reaction: float = 0.25
+    *, enough: float = 0.6, patience: float = 1.0, quickest: float = 1.5, reaction: float = 0.25
 ) -> Behaviour:
     """Keep the ball in the team by passes of at least 1.15 m, and never shoot, within the referee's commands.
 
