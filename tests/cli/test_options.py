@@ -34,8 +34,8 @@ ALL = [
 ]
 
 
-def test_there_are_thirteen_commands() -> None:
-    assert len(_COMMANDS) + len(_COMMAND_GROUPS) == 13
+def test_there_are_fourteen_commands() -> None:
+    assert len(_COMMANDS) + len(_COMMAND_GROUPS) == 14
 
 
 def test_every_option_is_in_the_table_and_its_help_begins_with_its_meaning() -> None:
