@@ -140,12 +140,16 @@ def _check_base(base: str) -> None:
 
 def _watch(address: str, seconds: float, log: Path) -> None:
     """Log what the cameras of a field send for some seconds."""
+    from robobt.league.connection import LeagueError
     from robobt.league.factory import parse_address
+    from robobt.league.log.files import LogKind
     from robobt.league.log.recorder import log_field
 
     connection, _ = parse_address(address)
     warn(f"watching {address} for {seconds:g} s")
-    log_field(log, connection.endpoints, connection.interface, seconds)
+    if not log_field(log, connection.endpoints, connection.interface, seconds)[LogKind.VISION]:
+        vision = connection.endpoints.vision
+        raise LeagueError(f"{address}: nothing came from the vision at {vision} within {seconds:g} s")
 
 
 def _show(found: Identification) -> None:

@@ -56,6 +56,12 @@ def test_a_field_is_identified_while_it_is_watched(tmp_path: Path) -> None:
     assert preset(str(out)).realism.object_offset == pytest.approx(OFFSET, abs=0.002)
 
 
+def test_a_field_that_sends_nothing_is_named() -> None:
+    address = f"league://observer?vision={free_endpoints().vision}"
+    told = robobt("record", "identify", address, "--seconds", 1, code=1)
+    assert f"{address}: nothing came from the vision" in "".join(told.splitlines())
+
+
 def test_a_match_identifies_the_field_on_which_it_was_played(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
