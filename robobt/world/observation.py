@@ -101,18 +101,34 @@ class ObservationEntry:
             )
 
 
+class Group(NamedTuple):
+    """Places of an observation vector for things of one kind, such as opponents, in any order.
+
+    Attributes:
+        first: index of the first place's first entry.
+        places: their number.
+        empty: the entries of a place for which there is nothing.
+    """
+
+    first: int
+    places: int
+    empty: tuple[float, ...]
+
+
 @dataclass(frozen=True)
 class ObservationSpec:
     """Name, version and entries of an observation vector.
 
     ``vectors`` are the indices at which plane vectors in the robot's frame begin, that to the ball first;
-    none where a policy cannot be asked in the ball's frame.
+    none where a policy cannot be asked in the ball's frame. ``groups`` are the places for things of one
+    kind, in the order of the entries.
     """
 
     name: str
     version: int
     entries: tuple[ObservationEntry, ...]
     vectors: tuple[int, ...] = ()
+    groups: tuple[Group, ...] = ()
 
     @property
     def size(self) -> int:

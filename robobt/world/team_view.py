@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from robobt.world.compiled import compilable, compiled, compiled_lean
 from robobt.world.geometry import FloatArray, Point
-from robobt.world.observation import ObservationSpec, entries, kinematics, motion, record_of, turned
+from robobt.world.observation import Group, ObservationSpec, entries, kinematics, motion, record_of, turned
 from robobt.world.records import BALL as BALL_RECORD
 from robobt.world.records import ROBOT, Ball, Robot
 from robobt.world.scoring import FAR_OFF, KICK_SPEED
@@ -85,7 +85,10 @@ def team_view(mates: int, opponents: int, told: int = 0) -> ObservationSpec:
         ),
         *entries(" ".join(("restart", "barred")[:told]), most=1.0),
     )
-    return ObservationSpec(f"team_view_{mates}_{opponents}{_RESTART_ENDINGS[told]}", 1, vector)
+    empty = (-AWAY, 0.0, 0.0, 0.0)
+    groups = Group(_OWN, mates, empty), Group(_OWN + _EACH * mates, opponents, empty)
+    name = f"team_view_{mates}_{opponents}{_RESTART_ENDINGS[told]}"
+    return ObservationSpec(name, 1, vector, groups=groups)
 
 
 def places_of(name: str) -> Places | None:

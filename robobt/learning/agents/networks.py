@@ -4,36 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from itertools import pairwise
-from typing import Literal, NotRequired, TypedDict
+from typing import NotRequired, TypedDict
 
 import numpy as np
 import torch
 from numpy.typing import NDArray
 from torch import Tensor, nn
 
-Activation = Literal["relu", "tanh"]
-
-
-def mlp(
-    sizes: Sequence[int],
-    layer_norm: bool,
-    generator: torch.Generator | None,
-    activation: Activation = "relu",
-) -> nn.Sequential:
-    """Build linear layers with ReLU or tanh between them, initialised as PyTorch does.
-
-    ``sizes`` are those of the input, the hidden layers and the output; ``layer_norm`` normalises each hidden
-    layer before its activation. Weights come from ``generator``, None for the global one.
-    """
-    layers: list[nn.Module] = []
-    for i, (fan_in, fan_out) in enumerate(pairwise(sizes)):
-        layers.append(_linear(fan_in, fan_out, generator))
-        if i < len(sizes) - 2:
-            if layer_norm:
-                layers.append(nn.LayerNorm(fan_out))
-            layers.append(nn.ReLU() if activation == "relu" else nn.Tanh())
-    return nn.Sequential(*layers)
+from robobt.learning.agents.entities import EntityNetwork
+from robobt.learning.agents.layers import Activation, mlp
+from robobt.world.observation import Group
 
 
 class ActorBuild(TypedDict):
@@ -45,6 +25,7 @@ class ActorBuild(TypedDict):
     layer_norm: bool
     activation: NotRequired[Activation]
     vectors: NotRequired[list[int]]
+    groups: NotRequired[list[tuple[int, int, tuple[float, ...]]]]
 
 
 class Actor(nn.Module):
@@ -61,8 +42,13 @@ class Actor(nn.Module):
     and the velocity at the beginning of its action is turned back, so it acts the same in every heading. The
     velocity is then clipped to length 1 in any direction.
 
+    ``groups`` are the entries on robots of one kind, which an
+    :class:`~robobt.learning.agents.entities.EntityNetwork` treats as sets; without any all entries are
+    inputs of one multilayer perceptron.
+
     Attributes:
         build: the arguments that make an actor of the same shape.
+        groups: the entries that are treated as sets.
     """
 
     inverse_scale: Tensor
@@ -76,6 +62,7 @@ class Actor(nn.Module):
         generator: torch.Generator | None = None,
         activation: Activation = "relu",
         vectors: Sequence[int] = (),
+        groups: Sequence[tuple[int, int, tuple[float, ...]]] = (),
     ) -> None:
         super().__init__()
         self.build: ActorBuild = {
@@ -87,9 +74,12 @@ class Actor(nn.Module):
         }
         if vectors:
             self.build["vectors"] = list(vectors)
+        self.groups = tuple([Group(*group) for group in groups])
+        if groups:
+            self.build["groups"] = [(*group,) for group in self.groups]
         self._vectors = list(vectors)
         self.register_buffer("inverse_scale", 1.0 / torch.tensor(list(scale), dtype=torch.float32))
-        self.body = mlp([len(scale), *hidden, actions], layer_norm, generator, activation)
+        self.body = body_of(scale, hidden, actions, layer_norm, generator, activation, self.groups)
 
     def forward(self, observation: Tensor) -> Tensor:
         """Map (..., observation) in SI units to (..., action) in [-1, 1]."""
@@ -122,6 +112,52 @@ class Actor(nn.Module):
         x, y = observation[..., self._vectors[0]], observation[..., self._vectors[0] + 1]
         length = torch.sqrt((x * x + y * y).clamp(min=1e-12))
         return x / length, y / length
+
+
+def body_of(
+    scale: Sequence[float],
+    hidden: Sequence[int],
+    outputs: int,
+    layer_norm: bool = False,
+    generator: torch.Generator | None = None,
+    activation: Activation = "relu",
+    groups: Sequence[Group] = (),
+) -> nn.Sequential | EntityNetwork:
+    """Build the layers from scaled observations to ``outputs``; the rest as for :class:`Actor`."""
+    if groups:
+        return EntityNetwork(scale, groups, hidden, outputs, generator)
+    return mlp([len(scale), *hidden, outputs], layer_norm, generator, activation)
+
+
+def resized(actor: Actor, scale: Sequence[float], groups: Sequence[Group]) -> Actor:
+    """Return an actor with the same weights for other numbers of places.
+
+    Args:
+        actor: an actor that treats robots as sets.
+        scale: (observation,) typical size of each entry of the other observation.
+        groups: the other observation's places.
+
+    Raises:
+        ValueError: it treats nothing as a set, or the observations differ in more than these numbers.
+    """
+    if not actor.groups:
+        raise ValueError("its network is not that of entities, so it serves one number of robots only")
+    ours, others = (_sizes(*pair) for pair in ((actor.build["scale"], actor.groups), (list(scale), groups)))
+    if any(mine != its for mine, its in zip(ours, others, strict=True) if mine and its):
+        raise ValueError("it observes entries of other kinds or scales")
+    build: ActorBuild = {**actor.build, "scale": list(scale), "groups": [(*group,) for group in groups]}
+    made = Actor(**build)
+    made.load_state_dict({**actor.state_dict(), "inverse_scale": made.inverse_scale})
+    return made
+
+
+def _sizes(scale: list[float], groups: Sequence[Group]) -> list[list[float]]:
+    """Return the scales of the entries outside the groups, and of a place of each group, if there are any."""
+    places = [scale[at : at + len(empty)] if count else [] for at, count, empty in groups]
+    rest = list(scale)
+    for at, count, empty in reversed(groups):
+        del rest[at : at + count * len(empty)]
+    return [rest, *places]
 
 
 class Critic(nn.Module):
@@ -179,13 +215,3 @@ def policy_of(actor: nn.Module) -> Callable[[NDArray[np.float64]], NDArray[np.fl
         return np.asarray(action.numpy(), dtype=np.float64)
 
     return decide
-
-
-def _linear(fan_in: int, fan_out: int, generator: torch.Generator | None) -> nn.Linear:
-    """Build PyTorch's default layer with weights from our generator instead of the process's."""
-    layer: nn.Linear = nn.utils.skip_init(nn.Linear, fan_in, fan_out)  # type: ignore[no-untyped-call]
-    bound = fan_in**-0.5
-    with torch.no_grad():
-        layer.weight.uniform_(-bound, bound, generator=generator)
-        layer.bias.uniform_(-bound, bound, generator=generator)
-    return layer

@@ -24,60 +24,24 @@ policy takes only the first part.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 import torch
-from numpy.typing import NDArray
 from torch import Tensor, nn
 from torch.nn.functional import softplus
 
 from robobt.learning.agents.learner import Learner
-from robobt.learning.agents.networks import Actor, mlp
+from robobt.learning.agents.networks import Actor, body_of
 from robobt.learning.agents.optimiser import Adam
+from robobt.learning.agents.rollout import Floats, Rollout, advantages
 from robobt.learning.agents.settings import PPOSettings
+from robobt.world.observation import Group
 
-Floats = NDArray[np.float64]
+PolicyUpdate = Literal["improve", "keep", "imitate"]
+"""What an update does to the policy."""
 
 _LOG_ROOT = 0.5 * float(np.log(2.0 * np.pi))
-
-
-@dataclass(slots=True)
-class Rollout:
-    """Steps of ``n`` arenas, T of each.
-
-    Attributes:
-        observation: (T, n, O) the policy's observation, followed by the additional inputs of the value.
-        action: (T, n, A) as sampled.
-        log_probability: (T, n) of the action.
-        value: (T, n) V of the observation.
-        next_value: (T, n) V of the next observation; arbitrary where the episode has terminated.
-        reward: (T, n).
-        terminated: (T, n) whether the episode terminated with this step.
-        ended: (T, n) whether it terminated or was truncated.
-    """
-
-    observation: Floats
-    action: Floats
-    log_probability: Floats
-    value: Floats
-    next_value: Floats
-    reward: Floats
-    terminated: NDArray[np.bool_]
-    ended: NDArray[np.bool_]
-
-    @classmethod
-    def empty(cls, ticks: int, n: int, observations: int, actions: int) -> Rollout:
-        """Return a rollout of zeros."""
-
-        def numbers() -> Floats:
-            return np.zeros((ticks, n))
-
-        def flags() -> NDArray[np.bool_]:
-            return np.zeros((ticks, n), dtype=np.bool_)
-
-        observation, action = np.zeros((ticks, n, observations)), np.zeros((ticks, n, actions))
-        return cls(observation, action, numbers(), numbers(), numbers(), numbers(), flags(), flags())
 
 
 class Value(nn.Module):
@@ -85,10 +49,16 @@ class Value(nn.Module):
 
     inverse_scale: Tensor
 
-    def __init__(self, scale: Sequence[float], hidden: Sequence[int], generator: torch.Generator) -> None:
+    def __init__(
+        self,
+        scale: Sequence[float],
+        hidden: Sequence[int],
+        generator: torch.Generator,
+        groups: Sequence[Group] = (),
+    ) -> None:
         super().__init__()
         self.register_buffer("inverse_scale", 1.0 / torch.tensor(list(scale), dtype=torch.float32))
-        self.body = mlp([len(scale), *hidden, 1], False, generator, "tanh")
+        self.body = body_of(scale, hidden, 1, False, generator, "tanh", groups)
         orthogonal(self.body, 1.0, generator)
 
     def forward(self, observation: Tensor) -> Tensor:
@@ -107,6 +77,7 @@ class PPO(Learner):
         seed: of the initial weights.
         state_scale: (state,) typical sizes of the value's additional inputs.
         vectors: entries of the observation that are turned into the ball's frame; see :class:`Actor`.
+        groups: entries of the observation on robots of one kind, for networks that treat them as sets.
     """
 
     def __init__(
@@ -117,12 +88,14 @@ class PPO(Learner):
         seed: int,
         state_scale: Sequence[float] = (),
         vectors: Sequence[int] = (),
+        groups: Sequence[Group] = (),
     ) -> None:
         super().__init__()
         self.settings = settings
         generator = torch.Generator().manual_seed(seed)
-        self.actor = Actor(scale, len(continuous), settings.hidden_sizes, False, generator, "tanh", vectors)
-        self.critic = Value([*scale, *state_scale], settings.hidden_sizes, generator)
+        hidden = settings.hidden_sizes
+        self.actor = Actor(scale, len(continuous), hidden, False, generator, "tanh", vectors, groups)
+        self.critic = Value([*scale, *state_scale], hidden, generator, groups)
         self._observed, self._in_ball_frame = len(scale), bool(vectors)
         self._continuous = torch.tensor(list(continuous))
         self._gamma = settings.gamma
@@ -160,8 +133,10 @@ class PPO(Learner):
         if last is not None:
             self._gamma = 1.0 - 1.0 / ((1.0 - share) / (1.0 - first) + share / (1.0 - last))
 
-    def update(self, rollout: Rollout, rng: np.random.Generator, value_alone: bool = False) -> None:
-        """Learn from a rollout by (3) and (4), or with ``value_alone`` by (4) only.
+    def update(self, rollout: Rollout, rng: np.random.Generator, policy: PolicyUpdate = "improve") -> None:
+        """Learn from a rollout: the value by (4), and the policy by (3), or by imitation, or not at all.
+
+        A policy that imitates learns to act as the rollout's actions say, whoever acted.
 
         Diagnostics are those of the last epoch, in which the policy is farthest from the one that acted.
         """
@@ -176,9 +151,11 @@ class PPO(Learner):
             last = epoch == settings.num_epochs - 1
             order = torch.from_numpy(rng.permutation(len(action)))
             for rows in torch.split(order, settings.minibatch_size):
-                if not value_alone:
+                if policy == "improve":
                     old, gain = log_probability[rows], advantage_[rows]
                     self._update_policy(observation[rows], action[rows], old, gain, last)
+                elif policy == "imitate":
+                    self._imitate(observation[rows], action[rows], last)
                 self._update_value(observation[rows], target_[rows], last)
                 self.updates += 1
         spread = target.var()
@@ -213,6 +190,19 @@ class PPO(Learner):
                 clip_fraction=(change.abs() > settings.clip_coef).float().mean(),
                 policy_grad_norm=norm,
             )
+
+    def _imitate(self, seen: Tensor, shown: Tensor, report: bool = False) -> None:
+        """Take a step towards the actions shown: of squared errors, and of cross entropy for thresholds."""
+        output, sure = self._policy_output(seen), self._continuous
+        off = (output - shown)[:, sure].square().sum(-1)
+        missed = softplus(-output[:, ~sure] * shown[:, ~sure].sign()).sum(-1)
+        loss = (off + missed).mean()
+        # The spread is not part of this loss.
+        weights = list(self.actor.parameters())
+        gradients = [*torch.autograd.grad(loss, weights), torch.zeros_like(self._log_std)]
+        self._actor_adam.clipped_step(gradients, self.settings.max_grad_norm)
+        if report:
+            self.diagnostics.add(imitation_loss=loss.detach(), imitation_error=off.detach().mean().sqrt())
 
     def _update_value(self, seen: Tensor, target: Tensor, report: bool = False) -> None:
         """Take a step of (4); with ``report`` add to the diagnostics."""
@@ -259,28 +249,17 @@ class PPO(Learner):
         )
 
 
-def orthogonal(body: nn.Sequential, last_gain: float, generator: torch.Generator) -> nn.Linear:
+def orthogonal(body: nn.Module, last_gain: float, generator: torch.Generator) -> nn.Linear:
     """Make a network's weights orthogonal and its biases 0; return its last layer.
 
     Hidden layers have the gain sqrt(2) with which signals neither fade nor grow.
     """
-    layers = [layer for layer in body if isinstance(layer, nn.Linear)]
+    layers = [layer for layer in body.modules() if isinstance(layer, nn.Linear)]
     for layer in layers:
         gain = last_gain if layer is layers[-1] else 2.0**0.5
         nn.init.orthogonal_(layer.weight, gain, generator=generator)
         nn.init.zeros_(layer.bias)
     return layers[-1]
-
-
-def advantages(rollout: Rollout, gamma: float, gae_lambda: float) -> Floats:
-    """Compute (1) and (2), (T, n)."""
-    delta = rollout.reward + gamma * rollout.next_value * ~rollout.terminated - rollout.value
-    result = np.zeros_like(delta)
-    later = np.zeros(delta.shape[1])
-    for t in reversed(range(len(delta))):
-        later = delta[t] + gamma * gae_lambda * later * ~rollout.ended[t]
-        result[t] = later
-    return result
 
 
 def _to_numpy(tensor: Tensor) -> Floats:

@@ -94,6 +94,11 @@ class PPOSettings(Settings):
     hidden_sizes: tuple[int, ...] = Field(
         (96, 96), min_length=1, max_length=6, description="units of each hidden layer, of policy and value"
     )
+    network: Literal["flat", "entities"] = Field(
+        "flat",
+        description="flat: all entries are inputs of one perceptron; entities: team-mates and opponents are "
+        "sets, so that the weights serve any number of robots; for tasks with several robots",
+    )
     critic: Literal["own", "central"] = Field(
         "own",
         description="input of the value: own: the robot's observation; central: also the true state of all "

@@ -63,8 +63,8 @@ class PlayedRobots:
                 store = Store(frame, RobotState(robot.number, 0.0, 0.0), team=teams[robot.team])
                 self._players[arena][index] = Player(robot, TreeRunner(play.build_tree(), store), store)
 
-    def decide(self, arenas: Arenas, commands: FloatArray) -> None:
-        """Decide one control tick: fill these robots' commands (n, R, COMMAND)."""
+    def decide(self, arenas: Arenas, commands: FloatArray, ticks: int = 1) -> None:
+        """Decide for some control ``ticks``: fill these robots' commands (n, R, COMMAND)."""
         if not self._plays:
             return
         for arena, players in enumerate(self._players):
@@ -74,7 +74,7 @@ class PlayedRobots:
                 view = views[player.robot.team]
                 told = player.decide(view, view.own[player.robot.number])
                 commands[arena, index] = 0.0 if told is None else command_row(told)
-            self._ticks[arena] += 1
+            self._ticks[arena] += ticks
 
     def _frame(self, arenas: Arenas, arena: int) -> Frame:
         """Return an arena's frame as blue sees it."""

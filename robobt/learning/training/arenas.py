@@ -16,12 +16,33 @@ from robobt.learning.training.setting_groups import PoolSettings
 
 
 def arenas_of(worlds: Sequence[TaskSettings], n: int, central: bool) -> VectorTask:
-    """Return arenas with ``n`` learners, one row each, shared evenly among the worlds."""
+    """Return arenas with ``n`` learners, one row each, shared evenly among the worlds.
+
+    Raises:
+        ValueError: ``n`` learners do not fill whole arenas with one at least of each world.
+    """
     if len(worlds) == 1:
         return make_rows(worlds[0], n, central)
-    each = learners_of(worlds[0])
-    shares = [each * share for share in shares_of(n // each, len(worlds))]
+    shares = learners_in(worlds, n)
     return SeveralWorlds([make_rows(*part, central) for part in zip(worlds, shares, strict=True)])
+
+
+def learners_in(worlds: Sequence[TaskSettings], n: int) -> list[int]:
+    """Return how many of ``n`` learners each world has, as evenly as whole arenas allow.
+
+    Raises:
+        ValueError: ``n`` learners do not fill whole arenas with one at least of each world.
+    """
+    each = [learners_of(world) for world in worlds]
+    counts, left = list(each), n - sum(each)
+    while left >= min(each):
+        fitting = [world for world, own in enumerate(each) if own <= left]
+        world = min(fitting, key=counts.__getitem__)
+        counts[world] += each[world]
+        left -= each[world]
+    if left != 0:
+        raise ValueError(f"{n} learners do not fill whole arenas of {', '.join(map(str, each))}")
+    return counts
 
 
 def shares_of(count: int, parts: int) -> list[int]:

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from robobt import __version__
 from robobt.config.commit import source_commit
-from robobt.learning.agents.networks import one_thread, policy_of
+from robobt.learning.agents.networks import one_thread, policy_of, resized
 from robobt.learning.envs import make_task
 from robobt.learning.training.evaluation import Evaluation
 from robobt.learning.training.fresh_starts import best_seed
@@ -24,6 +24,7 @@ from robobt.models.card import MODEL_NAME, Measured, ModelCard, ObservationCard,
 from robobt.models.export import export_model, refuse_to_replace
 from robobt.models.file import SUFFIXES, Format, ModelError
 from robobt.statistics import mean_interval
+from robobt.world.division import A as DIVISION_A
 
 _Floats = NDArray[np.float64]
 
@@ -71,7 +72,12 @@ def export_run(
         figures = problem_of(environment, evaluated_on(settings, str(run))).evaluate(
             policy_of(result.actor), "held_out", count
         )
-    task = make_task(environment, 1)
+    task, actor = make_task(environment, 1), result.actor
+    if actor.groups:
+        # Its weights serve any team, so its file has places for the largest.
+        most = {"mates": DIVISION_A.robots - 1, "opponents": DIVISION_A.robots}
+        task = make_task(environment.model_copy(update=most), 1)
+        actor = resized(actor, task.scale, task.observation.groups)
     skill = task.played_by
     card = ModelCard(
         kind="policy",
@@ -95,7 +101,7 @@ def export_run(
         code_commit=str(result.figures.get("commit", "")),
         created_by=f"robobt export {__version__} {source_commit()}".rstrip(),
     )
-    return export_model(result.actor, card, Path(folder), formats, force)
+    return export_model(actor, card, Path(folder), formats, force)
 
 
 def held_out(figures: Evaluation) -> dict[str, Measured]:

@@ -6,11 +6,14 @@ from pathlib import Path
 
 import numpy as np
 
+from robobt.learning.agents.networks import resized
 from robobt.learning.agents.past_selves import PastSelves
-from robobt.learning.agents.ppo import PPO, Rollout
+from robobt.learning.agents.ppo import PPO, PolicyUpdate
+from robobt.learning.agents.rollout import Rollout
 from robobt.learning.envs import make_task
 from robobt.learning.training.checkpoint import Arrays, RunState
 from robobt.learning.training.clock import RunClock
+from robobt.learning.training.imitation import Lesson
 from robobt.learning.training.problems import Problem
 from robobt.learning.training.progress import OnProgress
 from robobt.learning.training.run import TrainError, TrainingRun, part
@@ -39,9 +42,11 @@ class OnPolicyRun(TrainingRun):
             self._agent_seed,
             problem.state_scale,
             problem.vectors if settings.ppo.frame == "ball" else (),
+            problem.groups if settings.ppo.network == "entities" else (),
         )
 
         self._past = PastSelves(settings.pool.size)
+        self._lesson: Lesson | None = None
 
     def _begin(self) -> None:
         init = self._settings.init
@@ -58,6 +63,13 @@ class OnPolicyRun(TrainingRun):
         if self._problem.later is not None:
             self._task = self._problem.later(self._steps, self._past.decide)
         super()._rebuild()
+        self._lesson = None
+        if self._imitates:
+            self._lesson = Lesson(self._task, self._settings.imitation)
+
+    @property
+    def _imitates(self) -> bool:
+        return self._steps < self._settings.imitation.steps
 
     def _kept(self) -> Arrays:
         return {f"past/{key}": array for key, array in self._past.state().items()}
@@ -78,6 +90,15 @@ class OnPolicyRun(TrainingRun):
         given, own = load_actor(folder / ACTOR), self._agent.actor
         if given.build.get("vectors") != own.build.get("vectors"):
             raise TrainError(f"init: the policy of {folder} was trained in another frame, see ppo.frame")
+        if own.groups:
+            try:
+                given = resized(given, own.build["scale"], own.groups)
+            except ValueError as error:
+                raise TrainError(f"init: the policy of {folder}: {error}") from error
+            if given.build != own.build:
+                raise TrainError(f"init: the policy of {folder} has other layers: {given.build['hidden']}")
+            own.load_state_dict(given.state_dict())
+            return
         seen, sees = _seen(read_settings(folder)), _seen(self._settings)
         known = [k for k, name in enumerate(sees) if name in seen]
         scale = [own.build["scale"][k] for k in known]
@@ -97,12 +118,18 @@ class OnPolicyRun(TrainingRun):
         own.load_state_dict(weights)
 
     def _advance(self) -> None:
+        if not self._imitates:
+            self._lesson = None
         rollout = self._roll_out()
         share = self._share
         self._agent.set_learning_rates(1.0 - share)
         self._agent.anneal_gamma(share)
-        value_alone = self._steps < self._settings.ppo.critic_warmup_steps
-        self._agent.update(rollout, self._rng, value_alone)
+        policy: PolicyUpdate = "improve"
+        if self._lesson is not None:
+            policy = "imitate"
+        elif self._steps < self._settings.ppo.critic_warmup_steps:
+            policy = "keep"
+        self._agent.update(rollout, self._rng, policy)
         self._steps += rollout.reward.size
 
     def _roll_out(self) -> Rollout:
@@ -110,13 +137,21 @@ class OnPolicyRun(TrainingRun):
         ticks, n, agent = self._settings.ppo.num_steps, self._task.n, self._agent
         sizes = self._task.observation_size, self._task.action_size
         rollout = Rollout.empty(ticks, n, *sizes)
+        lesson = self._lesson
+        if lesson is not None:
+            lesson.share_out(self._steps, self._rng)
         for t in range(ticks):
             action, log_probability, value = agent.act(self._observation, self._rng)
             if not np.isfinite(action).all():
                 raise TrainError(
                     f"{self._folder.path}: the policy's action is not finite after {self._steps} steps"
                 )
-            step = self._task.step(action)
+            done = action
+            if lesson is not None:
+                action, done = lesson.next(action)
+            step = self._task.step(done)
+            if lesson is not None:
+                lesson.begin(step)
             rollout.observation[t], rollout.action[t] = self._observation, action
             rollout.log_probability[t], rollout.value[t] = log_probability, value
             rollout.reward[t], rollout.terminated[t] = step.reward, step.terminated

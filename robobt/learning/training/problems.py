@@ -21,6 +21,7 @@ from robobt.learning.training.settings import (
     validated_on,
     worlds_of,
 )
+from robobt.world.observation import Group
 
 Split = Literal["validation", "held_out"]
 """Fixed starts of evaluations: those that choose the actor, or those that its figures come from."""
@@ -48,6 +49,7 @@ class Problem:
             ``make``'s.
         vectors: entries at which the observation's vectors begin, that to the ball first; none where the
             policy cannot be asked in the ball's frame.
+        groups: the observation's places for robots of one kind.
     """
 
     make: Callable[[int], VectorTask]
@@ -57,6 +59,7 @@ class Problem:
     state_scale: tuple[float, ...] = ()
     later: Callable[[int, Others], VectorTask] | None = None
     vectors: tuple[int, ...] = ()
+    groups: tuple[Group, ...] = ()
 
 
 def problem_for(settings: TrainSettings) -> Problem:
@@ -110,6 +113,7 @@ def problem_of(
         tuple([entry != "kick" for entry in task.action.entries]),
         task.central_scale if central else (),
         vectors=task.observation.vectors,
+        groups=task.observation.groups,
     )
 
 

@@ -179,6 +179,24 @@ class PoolSettings(Settings):
         return self
 
 
+class ImitationSettings(Settings):
+    """The first steps of a run, in which the policy imitates a teacher instead of earning rewards.
+
+    At first the teacher moves the robots, later more and more often the policy, and the teacher shows what it
+    would have done (DAgger). The value learns from the rewards meanwhile.
+    """
+
+    teacher: str = Field("", description="a play, or a model by name or file; empty for none")
+    params: dict[str, Any] = Field(default_factory=dict, description="the play's parameters")
+    steps: int = Field(0, ge=0, description="steps of imitation; from then on the policy learns by itself")
+
+    @model_validator(mode="after")
+    def _check(self) -> Self:
+        if bool(self.teacher) != bool(self.steps):
+            raise ValueError("teacher and steps are given together")
+        return self
+
+
 class StageSettings(Settings):
     """A part of the run in which the environment or the pool differs: a curriculum."""
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any, Literal, Self, TypeVar
 
 from pydantic import BaseModel, Field, SerializeAsAny, ValidationError, model_validator
@@ -12,12 +12,13 @@ from robobt.learning.agents.settings import AgentSettings, PPOSettings
 from robobt.learning.envs import TaskSettings, find_task, make_task
 from robobt.learning.envs.make import learners_of, make_rows, task_file
 from robobt.learning.envs.soccer.settings import SoccerSettings
-from robobt.learning.training.arenas import opposed
+from robobt.learning.training.arenas import learners_in, opposed
 from robobt.learning.training.preset_files import SettingsError as SettingsError
 from robobt.learning.training.preset_files import assign, merged, read_preset
 from robobt.learning.training.setting_groups import (
     EvaluationSettings,
     ExperienceSettings,
+    ImitationSettings,
     PoolSettings,
     ReplaySettings,
     StageSettings,
@@ -53,6 +54,7 @@ class TrainSettings(Settings):
         "observation may have fewer robots",
     )
     pool: PoolSettings = PoolSettings()
+    imitation: ImitationSettings = ImitationSettings()
     learner: Literal["ddpg", "ppo"] = Field(
         "ddpg", description="ddpg uses agent, replay and collection; ppo uses ppo and collection.num_envs"
     )
@@ -111,8 +113,9 @@ class TrainSettings(Settings):
                 )
         if len(self.worlds) > min(self.collection.num_envs, self.evaluation.starts):
             raise ValueError("worlds: more than there are arenas or validation starts to share")
-        if self.learner != "ppo" and (self.stages or self.init is not None or self.pool != PoolSettings()):
-            raise ValueError("stages, init and pool are for learner ppo")
+        own = self.stages or self.init is not None or self.pool != PoolSettings() or self.imitation.steps
+        if self.learner != "ppo" and own:
+            raise ValueError("stages, init, pool and imitation are for learner ppo")
         return self
 
 
@@ -153,11 +156,14 @@ def load_settings(
         raise SettingsError(source, problem, "ppo.critic")
     if settings.ppo.frame == "ball" and not arenas.observation.vectors:
         raise SettingsError(source, "the ball's frame is for go_to_ball_among_robots", "ppo.frame")
+    if settings.ppo.network == "entities" and not arenas.observation.groups:
+        raise SettingsError(source, "entities is for tasks of several robots, such as soccer", "ppo.network")
     for index, stage in enumerate(stages_of(settings, source)):
         place = f"environment with stages[{index}]" if settings.stages else "environment"
         worlds = worlds_of(stage, source)
-        if len(worlds) * learners_of(worlds[0]) > settings.collection.num_envs:
+        if sum(map(learners_of, worlds)) > settings.collection.num_envs:
             raise SettingsError(source, "more than there are arenas to share", "worlds")
+        _check_count(settings, worlds, source)
         for world in worlds:
             _check_rows(settings, environment, world, source, place)
         _check_pool(stage, environment, source)
@@ -230,14 +236,18 @@ def stage_after(settings: TrainSettings, steps: int) -> int:
     return max(sum(steps >= begin for begin in begun) - 1, 0)
 
 
+def _check_count(settings: TrainSettings, worlds: Sequence[TaskSettings], source: str) -> None:
+    """Raise unless the learners fill whole arenas of the worlds."""
+    try:
+        learners_in(worlds, settings.collection.num_envs)
+    except ValueError as error:
+        raise SettingsError(source, str(error), "collection.num_envs") from error
+
+
 def _check_rows(
     settings: TrainSettings, environment: TaskSettings, other: TaskSettings, source: str, place: str
 ) -> None:
     """Raise unless a policy of the environment can learn and play in the other one."""
-    count = settings.collection.num_envs
-    if count % learners_of(other):
-        problem = f"must be a multiple of the {learners_of(other)} robots that learn in an arena"
-        raise SettingsError(source, problem, "collection.num_envs")
     sizes = [
         make_rows(each, learners_of(each), settings.central).observation_size for each in (environment, other)
     ]

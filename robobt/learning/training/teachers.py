@@ -53,7 +53,7 @@ class SkillTeacher:
         self._task = task
         # The tasks have no defence areas, and a skill would keep out of the opponents' area.
         self._field = task.settings.field.model_copy(update={"defense_depth": 0.0, "defense_width": 0.0})
-        self._limits = _within(task.settings.robot_limits, task.action)
+        self._limits = within(task.settings.robot_limits, task.action)
         self._runners: dict[int, tuple[TreeRunner, Store]] = {}
         self._ticks = np.zeros(task.n, dtype=np.int64)
 
@@ -152,7 +152,7 @@ def action_of(command: RobotCommand, scaling: ActionScaling) -> FloatArray:
     return action
 
 
-def _within(limits: RobotLimits, action: ActionScaling) -> RobotLimits:
+def within(limits: RobotLimits, action: ActionScaling) -> RobotLimits:
     """Return the robot's limits less what actions cannot ask for."""
     fastest = min(limits.max_speed, action.max_speed) if action.kind == "drive" else limits.max_speed
     return limits.model_copy(update={"max_speed": fastest, "max_turn": min(limits.max_turn, action.max_turn)})

@@ -8,7 +8,8 @@ import torch
 from torch.distributions import Bernoulli, Normal
 
 from robobt.learning.agents.networks import policy_of
-from robobt.learning.agents.ppo import PPO, Rollout, advantages
+from robobt.learning.agents.ppo import PPO
+from robobt.learning.agents.rollout import Rollout, advantages
 from robobt.learning.agents.settings import PPOSettings
 
 GAMMA, LAMBDA = 0.9, 0.8
@@ -216,7 +217,7 @@ def test_it_looks_farther_ahead_the_longer_it_has_learned(monkeypatch, share, ho
     rollout, patient, valued = random_rollout(3, 2), agent(gamma=0.9, final_gamma=0.98, gae_lambda=1.0), []
     monkeypatch.setattr(patient, "_update_value", lambda _, target, report: valued.extend(target.tolist()))
     patient.anneal_gamma(share)
-    patient.update(rollout, np.random.default_rng(0), value_alone=True)
+    patient.update(rollout, np.random.default_rng(0), policy="keep")
     expected = advantages(rollout, 1.0 - 1.0 / horizon, 1.0) + rollout.value
     np.testing.assert_allclose(sorted(set(valued)), sorted(expected.ravel()), rtol=1e-6)
 

@@ -98,7 +98,7 @@ def test_a_problem_has_a_row_for_each_learner() -> None:
     made = problem.make(6)
     assert isinstance(made, PerRobot)
     assert (made.n, made.task.n, len(problem.scale)) == (6, 2, made.observation_size)
-    with pytest.raises(SettingsError, match=r"collection\.num_envs: must be a multiple of the 3 robots"):
+    with pytest.raises(SettingsError, match=r"collection\.num_envs: 128 learners do not fill whole arenas"):
         load_settings("attack3v2", "fast", {"collection.num_envs": 128})
 
 
