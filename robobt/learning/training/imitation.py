@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from typing import Any
+
 import numpy as np
 
 from robobt.learning.envs import ArenaTask, VectorTask
@@ -18,16 +21,19 @@ class Lesson:
 
     Args:
         task: the arenas, a row for each learner.
-        settings: the teacher, and for how many steps it teaches.
+        settings: the teachers, and for how many steps they teach.
 
     Raises:
-        TeacherError: nobody can teach this task.
+        TeacherError: nobody can teach this task, or there is not one for each world.
     """
 
     def __init__(self, task: VectorTask, settings: ImitationSettings) -> None:
         self._steps = settings.steps
         parts = task.parts if isinstance(task, SeveralWorlds) else (task,)
-        self._parts = [_Part(part, settings) for part in parts]
+        names = settings.teachers * len(parts) if len(settings.teachers) == 1 else settings.teachers
+        if len(names) != len(parts):
+            raise TeacherError(f"imitation: {len(names)} teachers for {len(parts)} worlds")
+        self._parts = [_Part(*each, settings.params) for each in zip(parts, names, strict=True)]
         self._acts = np.zeros(task.n, dtype=np.bool_)
 
     def share_out(self, steps: int, rng: np.random.Generator) -> None:
@@ -59,10 +65,10 @@ class Lesson:
 class _Part:
     """Arenas of one world: the task, how many learners an arena has, and the teacher."""
 
-    def __init__(self, part: VectorTask, settings: ImitationSettings) -> None:
+    def __init__(self, part: VectorTask, teacher: str, params: Mapping[str, Any]) -> None:
         task = part.task if isinstance(part, PerRobot) else part
         if not isinstance(task, ArenaTask):
             raise TeacherError("imitation: nobody teaches against a pool of past selves")
         self.task, self.each = task, len(task.learners)
-        self.teacher: TeamTeacher = teacher_of(task, settings.teacher, settings.params)
+        self.teacher: TeamTeacher = teacher_of(task, teacher, params)
         self.teacher.begin(np.arange(task.n))

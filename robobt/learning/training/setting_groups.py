@@ -186,14 +186,18 @@ class ImitationSettings(Settings):
     would have done (DAgger). The value learns from the rewards meanwhile.
     """
 
-    teacher: str = Field("", description="a play, or a model by name or file; empty for none")
-    params: dict[str, Any] = Field(default_factory=dict, description="the play's parameters")
+    teachers: tuple[str, ...] = Field(
+        (),
+        max_length=64,
+        description="plays, or models by name or file: one for all worlds, or one for each; () for none",
+    )
+    params: dict[str, Any] = Field(default_factory=dict, description="parameters of those that are plays")
     steps: int = Field(0, ge=0, description="steps of imitation; from then on the policy learns by itself")
 
     @model_validator(mode="after")
     def _check(self) -> Self:
-        if bool(self.teacher) != bool(self.steps):
-            raise ValueError("teacher and steps are given together")
+        if bool(self.teachers) != bool(self.steps):
+            raise ValueError("teachers and steps are given together")
         return self
 
 

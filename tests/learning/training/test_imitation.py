@@ -76,7 +76,7 @@ def test_the_teacher_hands_over_arena_by_arena() -> None:
     alone = SoccerTask(SoccerSettings(blue=("learner",), mates=2, opponents=3), 40)
     both = SeveralWorlds([task, alone])
     both.reset(0)
-    lesson = Lesson(both, ImitationSettings(teacher=MODEL, steps=1000))
+    lesson = Lesson(both, ImitationSettings(teachers=(MODEL,), steps=1000))
     rng = np.random.default_rng(0)
     own = np.full((120, 4), 0.5)
     shares = []
@@ -99,13 +99,13 @@ def test_what_cannot_teach_is_refused() -> None:
     pool = PoolSettings(share=1.0)
     past = opposed_arenas(SUITE["Small3v3"](), pool, lambda seen: seen, 8, central=False)
     with pytest.raises(TeacherError, match="nobody teaches against a pool"):
-        Lesson(past, ImitationSettings(teacher=MODEL, steps=10))
+        Lesson(past, ImitationSettings(teachers=(MODEL,), steps=10))
     with pytest.raises(TeacherError, match=r"go_to_ball_ddpg: observes go_to_ball"):
         teacher_of(SoccerTask(), "go_to_ball_ddpg", {})
-    with pytest.raises(SettingsError, match="teacher and steps are given together"):
+    with pytest.raises(SettingsError, match="teachers and steps are given together"):
         load_settings("small3v3", "fast", {"imitation.steps": 100})
     with pytest.raises(SettingsError, match="pool and imitation are for learner ppo"):
-        load_settings("shoot", "fast", {"imitation": {"teacher": MODEL, "steps": 100}})
+        load_settings("shoot", "fast", {"imitation": {"teachers": [MODEL], "steps": 100}})
 
 
 def test_imitation_leaves_the_spread_alone() -> None:
@@ -136,7 +136,7 @@ def test_a_run_that_imitates_and_is_broken_off_ends_as_if_it_had_not_been(
     changes = {
         "ppo.network": "entities",
         "environment.yellow": ["goalkeeper", "challenge", "challenge"],
-        "imitation": {"teacher": teacher, "steps": 360},
+        "imitation": {"teachers": [teacher], "steps": 360},
     }
     settings = load_settings("small3v3", "fast", TINY | changes)
     whole = train(settings, tmp_path / "whole")
