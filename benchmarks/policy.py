@@ -49,7 +49,7 @@ def bench_policy(
         ModelError: the model cannot be used, or is not a TorchScript file.
     """
     policy = load_policy(model)
-    step = max(PERIOD, policy.card.period)
+    step = max(PERIOD, policy.card.period or 0.0)
     ticks = (rounds + 1) * calls
     cases: dict[str, Callable[[], object]] = {
         "module_us": bare_module(policy),
