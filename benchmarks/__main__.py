@@ -29,6 +29,7 @@ COMMANDS = {
     "delay_in_play": "delay_in_play:delay_in_play",
     "blind_team": "blind_team:blind_team",
     "late_team": "late_team:late_team",
+    "any_number": "any_number:any_number",
     "filter": "filter:filter_",
     "chips": "chips:chips",
     "clock": "clock:clock",
