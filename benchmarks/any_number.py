@@ -9,10 +9,11 @@ from typing import Annotated, Any
 import typer
 
 from robobt.cli.common import MAX_SEED, Json, Progress, Workers, console, cores, print_json, table
+from robobt.cli.tournament.asked import parse_entrant
 from robobt.match.scenario.robots import Robots
 from robobt.match.scenario.scenario import Scenario, load_scenario
 from robobt.statistics import wilson_interval
-from robobt.tournament import Plan, play_tournament, read_entrant, standings_of
+from robobt.tournament import Plan, play_tournament, standings_of
 from robobt.tournament.standings import Encounter
 from robobt.world.division import A, B
 
@@ -57,7 +58,7 @@ def any_number(
     won, drawn, lost, goals_for, goals_against, decided (share of the decided matches that were won), low and
     high (its 95 % interval, by Wilson); these three are null without a decided match.
     """
-    teams = read_entrant(play), read_entrant(against)
+    teams = parse_entrant(play), parse_entrant(against)
     asked = robots or [2, 3, 6]
     found: dict[int, dict[str, Any]] = {}
     with Progress("matches", 2 * rounds * len(asked)) as progress, tempfile.TemporaryDirectory() as folder:

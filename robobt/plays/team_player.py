@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Literal
 
 from robobt.plays.base import PLAYS, first_of, when
 from robobt.plays.penalty_kick import penalty_kick
@@ -67,6 +68,7 @@ def team_player(
     score: str = "score_on_defender_ppo",
     go: str = "",
     open_play: str = "",
+    open_play_tasks: Literal["all", "attack"] = "all",
     without: Omitted = "nothing",
     tactics: TacticsSettings = DEFAULT_TACTICS,
 ) -> Behaviour:
@@ -87,8 +89,9 @@ def team_player(
         go: name or file of a model for driving to places among moving robots
             (:class:`~robobt.skills.go_to_pose.GoToPose`); empty for the planner alone.
         open_play: name or file of a model for a task with several robots, which plays while the ball is in
-            play, whatever the robot's task, and replaces ``score`` and ``go``; empty for the hand-written
-            tasks.
+            play and replaces ``score``; empty for the hand-written tasks.
+        open_play_tasks: tasks that this model plays: ``all``, which replaces ``go`` too, or with ``attack``
+            those of attacker, receivers and supporters; the wall and the markers are then hand-written.
         without: a part of the tactics to switch off, for every robot of the team, so that a tournament
             measures its worth.
         tactics: settings of the team's tactics, such as ``{switch_gain: 0.5}``; settings of one robot apply
@@ -99,6 +102,8 @@ def team_player(
         return ChooseKick(shoot_at=shoot_at, pass_at=pass_at, patience=patience, chips=chips)
 
     in_play: dict[str, Behaviour] = {} if open_play else {"attack": attack(choose, without, score)}
+    if open_play and open_play_tasks == "attack":
+        in_play = {task: play_on(open_play) for task in ("attack", "receive", "support")}
     player = TaskSwitch(
         "part",
         {
@@ -119,7 +124,7 @@ def team_player(
             ),
             **in_play,
         },
-        otherwise=play_on(open_play) if open_play else TakePlace(policy=go),
+        otherwise=play_on(open_play) if open_play and not in_play else TakePlace(policy=go),
         without=without,
         tactics=tactics,
     )

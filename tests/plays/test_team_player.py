@@ -107,6 +107,29 @@ def test_a_policy_plays_while_the_ball_is_in_play_and_only_then(tmp_path: Path) 
     assert not seen[False, True]
 
 
+@pytest.mark.integration
+def test_a_policy_may_play_the_attack_alone(tmp_path: Path) -> None:
+    model = str(write_model(tmp_path, Passing(), team_card("LearnedSkill", 5, 6)))
+    scenario = load_scenario("six_v_six").lasting(8.0)
+    for number in range(1, 6):
+        scenario = scenario.with_robot(f"blue {number}", open_play=model, open_play_tasks="attack")
+    learned: Counter[str] = Counter()
+    others: Counter[str] = Counter()
+    with MatchLoop(scenario, 4, sim_world) as match:
+        mine = [player for player in match.players if player.robot.team is Team.BLUE and player.robot.number]
+        while match.tick():
+            for player in mine:
+                assert not player.problem
+                store = player.store
+                if store.frame.game.in_play:
+                    tip = player.runner.root.tip()
+                    driven = tip is not None and tip.feedback_message == f"driven by {model}"
+                    (learned if driven else others)[store.team.plan.tasks[store.me.id]] += 1
+    assert learned["attack"] > 50
+    assert others["wall"] + others["mark"] > 50
+    assert not set(learned) & {"wall", "mark"}
+
+
 @pytest.fixture(scope="module")
 def watched() -> Watched:
     return Watched()
