@@ -97,20 +97,22 @@ KNOWN = (
 """The published examples. The second is harder than those of the competition, its rules say."""
 
 
-def unseen(generator: np.random.Generator) -> ObstacleCourse:
+def unseen(generator: np.random.Generator, placing: bool = True) -> ObstacleCourse:
     """Return a course drawn from ``generator``, of the elements that the rules name.
+
+    Without ``placing`` no course has a ball that is being placed.
 
     Two to five robots stand near the straight way, up to two drive to and fro with 0.3 to 1 m/s, in half of
     the courses a ball is being placed, and in two of five there is a virtual line. A course is drawn again
     until a way stays open with the moving robots at either end, and the start and the target are free.
     """
     while True:
-        course = _drawn(generator)
+        course = _drawn(generator, placing)
         if _is_fair(course):
             return course
 
 
-def _drawn(generator: np.random.Generator) -> ObstacleCourse:
+def _drawn(generator: np.random.Generator, placing: bool) -> ObstacleCourse:
     target = OBSTACLE_TARGET
     uniform = generator.uniform
     while True:
@@ -139,7 +141,7 @@ def _drawn(generator: np.random.Generator) -> ObstacleCourse:
         b = other_end(a, 1.0)
         moves = other_end(a, 1.2) if uniform() < 0.5 else None
         obstacles += [Obstacle(2, a, moves, 0.5), Obstacle(3, b)]
-    if uniform() < 0.5:
+    if placing and uniform() < 0.5:
         at = near_way()
         moves = other_end(at, 2.0) if uniform() < 0.5 else None
         spot = float(uniform(0.3, 4.0)), float(uniform(-2.5, 2.5))

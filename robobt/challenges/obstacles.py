@@ -2,24 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
+from math import nan
 from typing import ClassVar
 
 import numpy as np
 
 from robobt.challenges.challenge import CHALLENGES, Challenge, ChallengeAttempt, Figures
 from robobt.challenges.obstacle_course import KNOWN, ObstacleCourse, unseen
+from robobt.challenges.touching import CourseTouch, touched
 from robobt.match.referee.events import Decision
 from robobt.match.refereeing import RefereeFactory
 from robobt.match.scenario.scenario import Scenario, scenario_from
 from robobt.plays.challenges.obstacle_run import OBSTACLE_TARGET, VIRTUAL_LINE
 from robobt.world.field import FieldGeometry
 from robobt.world.game import GameState, RefereeCommand, Restart, Team
-from robobt.world.geometry import Point, distance, segment_distance
-from robobt.world.rules import AREA_DISTANCE, STOP_DISTANCE, area_distance
-from robobt.world.state import ROBOT_RADIUS, Frame
+from robobt.world.geometry import Point, distance
+from robobt.world.state import Frame
 
 COURSE_TIME = 30.0
 """Time limit of a trial [s]. Source: the challenge's rules of 2025."""
@@ -27,8 +28,13 @@ COURSE_TIME = 30.0
 REACHED = 0.07
 """A robot whose centre is this near to the target has reached it [m]. Source: as above."""
 
-_HULLS_TOUCH = 2.0 * ROBOT_RADIUS + 0.002
-"""Two robots whose centres are this near touch [m]; contact is seen once a tick."""
+_TOLD = {
+    CourseTouch.ROBOT: "a robot",
+    CourseTouch.AREA: "the area",
+    CourseTouch.BALL_WAY: "the ball's way",
+    CourseTouch.LINE: "the line",
+}
+"""The touches as figures name them."""
 
 
 @dataclass(slots=True, frozen=True)
@@ -66,13 +72,13 @@ class ObstacleJudge:
     """
 
     def __init__(self) -> None:
-        self.touched = ""
+        self.touched = CourseTouch.NOTHING
         self.time: float | None = None
 
     def see(self, frame: Frame, game: GameState) -> bool:
         """Take in the next true ``frame`` and the ``game`` there; return whether the trial is over."""
         (robot,) = frame.own
-        self.touched = next(_touches(frame, game), "")
+        self.touched = _touch(frame, game)
         if not self.touched and distance(robot.position, OBSTACLE_TARGET) <= REACHED:
             self.time = frame.time
         return bool(self.touched) or self.time is not None
@@ -81,41 +87,23 @@ class ObstacleJudge:
         """Return the time left, and what happened: 1 or 0 each; the time only if the target was reached."""
         left = 0.0 if self.time is None else max(0.0, COURSE_TIME - self.time)
         figures = {"time left": left, "reached": float(self.time is not None)}
-        figures |= {f"touched {what}": float(self.touched == what) for what in _TOUCHES}
+        figures |= {f"touched {name}": float(self.touched is what) for what, name in _TOLD.items()}
         return figures if self.time is None else {**figures, "time": self.time}
 
 
-def _robots(frame: Frame, _game: GameState) -> bool:
+def _touch(frame: Frame, game: GameState) -> CourseTouch:
     (me,) = frame.own
-    return any(distance(me.position, other.position) <= _HULLS_TOUCH for other in frame.opponents)
-
-
-def _area(frame: Frame, _game: GameState) -> bool:
-    (me,) = frame.own
-    return area_distance(frame.field, Team.YELLOW, me.x, me.y) < AREA_DISTANCE + ROBOT_RADIUS
-
-
-def _ball_way(frame: Frame, game: GameState) -> bool:
-    (me,) = frame.own
-    spot = game.placement or frame.ball.position
-    return segment_distance(me.position, frame.ball.position, spot) < STOP_DISTANCE + ROBOT_RADIUS
-
-
-def _line(frame: Frame, _game: GameState) -> bool:
     ends = [robot.position for robot in frame.opponents if robot.id in VIRTUAL_LINE]
-    return len(ends) == 2 and segment_distance(frame.own[0].position, *ends) <= ROBOT_RADIUS
-
-
-_TOUCHES: Mapping[str, Callable[[Frame, GameState], bool]] = {
-    "a robot": _robots,
-    "the area": _area,
-    "the ball's way": _ball_way,
-    "the line": _line,
-}
-
-
-def _touches(frame: Frame, game: GameState) -> Iterator[str]:
-    return (what for what, touches in _TOUCHES.items() if touches(frame, game))
+    return CourseTouch(
+        touched(
+            np.array([me.position]),
+            np.array([robot.position for robot in frame.opponents]).reshape(1, -1, 2),
+            np.array([frame.ball.position]),
+            np.array([game.placement or frame.ball.position]),
+            np.array([ends if len(ends) == 2 else [(nan, nan), (nan, nan)]]),
+            frame.field,
+        )[0]
+    )
 
 
 def course_attempt(course: ObstacleCourse, name: str) -> ChallengeAttempt:

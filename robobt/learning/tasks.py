@@ -31,6 +31,7 @@ _SHIPPED_TASKS = {
     "redirect": "soccer.suite:Redirect",
     "attack3v2": "soccer.suite:Attack3v2",
     "small3v3": "soccer.suite:Small3v3",
+    "obstacle_course": "obstacle_course.task:ObstacleCourseTask",
 }
 """Modules of the shipped tasks; each is imported at first use."""
 

@@ -8,6 +8,7 @@ import pytest
 from robobt.challenges.obstacle_course import KNOWN, unseen
 from robobt.challenges.obstacles import ObstacleJudge, Obstacles, ObstaclesUnseen, PlacementState
 from robobt.challenges.run import ChallengeEntry, play_run
+from robobt.challenges.touching import CourseTouch
 from robobt.plays.challenges.obstacle_run import OBSTACLE_TARGET
 from robobt.world.field import DIVISION_B
 from robobt.world.game import Restart, Team
@@ -29,22 +30,22 @@ def judged(
 
 
 @pytest.mark.parametrize(
-    ("x", "y", "yellow", "touched"),
+    ("x", "y", "yellow", "touch"),
     [
-        (3.0, 2.0, {4: (3.19, 2.0)}, ""),
-        (3.0, 2.0, {4: (3.181, 2.0)}, "a robot"),
-        (3.22, -1.0, {}, "the area"),
-        (3.20, -1.0, {}, ""),
-        (4.0, 1.28, {}, "the area"),
-        (1.5, 0.58, {}, "the ball's way"),
-        (1.5, 0.60, {}, ""),
-        (3.0, 2.08, {2: (2.7, 2.0), 3: (3.3, 2.0)}, "the line"),
-        (3.0, 2.10, {2: (2.7, 2.0), 3: (3.3, 2.0)}, ""),
-        (3.0, 2.08, {2: (2.7, 2.0), 4: (3.3, 2.0)}, ""),
+        (3.0, 2.0, {4: (3.19, 2.0)}, CourseTouch.NOTHING),
+        (3.0, 2.0, {4: (3.181, 2.0)}, CourseTouch.ROBOT),
+        (3.22, -1.0, {}, CourseTouch.AREA),
+        (3.20, -1.0, {}, CourseTouch.NOTHING),
+        (4.0, 1.28, {}, CourseTouch.AREA),
+        (1.5, 0.58, {}, CourseTouch.BALL_WAY),
+        (1.5, 0.60, {}, CourseTouch.NOTHING),
+        (3.0, 2.08, {2: (2.7, 2.0), 3: (3.3, 2.0)}, CourseTouch.LINE),
+        (3.0, 2.10, {2: (2.7, 2.0), 3: (3.3, 2.0)}, CourseTouch.NOTHING),
+        (3.0, 2.08, {2: (2.7, 2.0), 4: (3.3, 2.0)}, CourseTouch.NOTHING),
     ],
 )
-def test_what_touches(x: float, y: float, yellow: dict[int, tuple[float, float]], touched: str) -> None:
-    assert judged(x, y, yellow).touched == touched
+def test_what_touches(x: float, y: float, yellow: dict[int, tuple[float, float]], touch: CourseTouch) -> None:
+    assert judged(x, y, yellow).touched is touch
 
 
 def test_the_score_is_the_time_left_at_the_target() -> None:

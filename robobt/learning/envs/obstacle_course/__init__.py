@@ -1,0 +1,1 @@
+"""The obstacle challenge of 2025 for learners."""
