@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from robobt.world.ball_model import way_in
-from robobt.world.compiled import compiled, records
+from robobt.world.compiled import compiled, compiled_merged, records
 from robobt.world.geometry import FloatArray
 from robobt.world.records import BALL, MEETING, MOVER, Ball, Meeting, Mover, mover_records
 from robobt.world.state import TOUCH_DISTANCE
@@ -106,7 +106,7 @@ def time_to(mover: Mover, x: float, y: float, slack: float) -> float:
     return time
 
 
-@compiled
+@compiled_merged
 def out_of_reach(mover: Mover, x: float, y: float, fastest: float, time: float) -> bool:
     """Return whether a robot certainly cannot meet a ball at (x, y) by ``time`` [s].
 
@@ -163,7 +163,7 @@ def meetings(
     return out
 
 
-@compiled
+@compiled_merged
 def _path(
     ball: Ball, rolling: float, slide: float, roll: float, half_length: float, half_width: float
 ) -> Sequence[Meeting]:
@@ -187,7 +187,7 @@ def _path(
     return path[: last + 1]
 
 
-@compiled
+@compiled_merged
 def _meet(mover: Mover, path: Sequence[Meeting], meeting: Meeting) -> None:
     """Fill in where on its path a robot can meet the ball first."""
     fastest = max(mover.max_speed, hypot(mover.vx, mover.vy))

@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from math import cos, hypot, sin, sqrt
 
 from robobt.world.command import RobotCommand
-from robobt.world.compiled import compiled
+from robobt.world.compiled import compiled, compiled_merged
 from robobt.world.geometry import FloatArray, Point
 from robobt.world.records import ROBOT, Mover, Robot, mover_records, movers_of, robot_of
 from robobt.world.state import ROBOT_RADIUS, Frame, RobotState
@@ -60,7 +60,7 @@ def _slowed(me_: FloatArray, velocity: Point, others_: FloatArray, braking: floa
     return slowed_in_play(me_.view(ROBOT)[0], velocity, mover_records(others_), braking)
 
 
-@compiled
+@compiled_merged
 def slowed_in_play(me: Robot, velocity: Point, others: Sequence[Mover], braking: float) -> Point:
     """Return the velocity ahead and to the left, slowed down towards opponents that it would crash into.
 
@@ -122,7 +122,7 @@ def slowed_towards(me: Robot, velocity: Point, others: Sequence[Mover], skip: in
     return (c * vx + s * vy, c * vy - s * vx) if changed else (ahead, left)
 
 
-@compiled
+@compiled_merged
 def _meeting(me: Robot, vx: float, vy: float, other: Mover) -> tuple[float, float, float]:
     """Return the gap to a robot that would be hit and the direction to it; -1 where it passes by."""
     dx, dy = other.x - me.x, other.y - me.y

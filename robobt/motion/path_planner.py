@@ -32,7 +32,7 @@ from robobt.motion.scene import (
 from robobt.motion.stadium import outside_stadium
 from robobt.motion.velocity_obstacles import STANDS_APART, clear_velocity, is_moving
 from robobt.world.command import RobotCommand
-from robobt.world.compiled import compiled, record_dtype, records
+from robobt.world.compiled import compiled, compiled_merged, record_dtype, records
 from robobt.world.geometry import FloatArray, Point
 from robobt.world.limits import RobotLimits
 from robobt.world.records import (
@@ -287,7 +287,7 @@ def waypoint_law(
     return best_x, best_y, passing
 
 
-@compiled
+@compiled_merged
 def _round_areas(trip: Trip, target: Point, scene: Scene) -> tuple[float, float, bool]:
     """Return the target, or the first corner if a defence area is in the way; and whether one is."""
     x, y = trip.me.x, trip.me.y
@@ -302,7 +302,7 @@ def _round_areas(trip: Trip, target: Point, scene: Scene) -> tuple[float, float,
     return goal_x, goal_y, corner_first
 
 
-@compiled
+@compiled_merged
 def _round_area(
     scene: Scene, x: float, y: float, gx: float, gy: float, gap: float
 ) -> tuple[float, float, bool]:
@@ -325,7 +325,7 @@ def _round_area(
     return front - ROBOT_AREA_GAP, side + ROBOT_AREA_GAP if beside > 0.0 else -side - ROBOT_AREA_GAP, True
 
 
-@compiled
+@compiled_merged
 def _obstacles(
     trip: Trip, scene: Scene, movers: Sequence[Mover], gx: float, gy: float, moving: bool
 ) -> Sequence[_Circle]:
@@ -458,7 +458,7 @@ def _detour(
     return corner_x, corner_y, cost, arc, n > 0
 
 
-@compiled
+@compiled_merged
 def _without(circles: Sequence[_Circle], x: float, y: float) -> Sequence[_Circle]:
     """Return the circles except those around (x, y)."""
     rest: MutableSequence[_Circle] = records(len(circles), _CIRCLE)

@@ -17,7 +17,7 @@ from __future__ import annotations
 from math import atan2, cos, hypot, inf, pi, radians, sin, sqrt
 
 from robobt.world.command import RobotCommand
-from robobt.world.compiled import compilable, compiled
+from robobt.world.compiled import compilable, compiled, compiled_merged
 from robobt.world.geometry import FloatArray, Point, wrap_angle
 from robobt.world.limits import RobotLimits
 from robobt.world.records import LIMITS, ROBOT, Limits, Robot, limits_of, robot_of
@@ -153,7 +153,7 @@ def _turn_rate(me_: FloatArray, heading: float, own_: FloatArray, given_: FloatA
     return turn_law(me_.view(ROBOT)[0], heading, own_.view(LIMITS)[0], given_.view(LIMITS)[0], period)
 
 
-@compiled
+@compiled_merged
 def drive_law(
     me: Robot,
     target: Point,

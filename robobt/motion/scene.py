@@ -12,7 +12,7 @@ from typing import TypedDict
 
 import numpy as np
 
-from robobt.world.compiled import compiled
+from robobt.world.compiled import compiled_merged
 from robobt.world.geometry import FloatArray, Point
 from robobt.world.records import SCENE, Mover, Scene, Trip
 from robobt.world.rules import AREA_DISTANCE, STOP_DISTANCE, STOP_SPEED, in_area
@@ -124,7 +124,7 @@ def trip_of(
     return np.array(trip, dtype=np.float64)
 
 
-@compiled
+@compiled_merged
 def allowed_place(trip: Trip, scene: Scene) -> Point:
     """Return the point nearest to the target where the robot may stand."""
     x, y = trip.x, trip.y
@@ -146,7 +146,7 @@ def allowed_place(trip: Trip, scene: Scene) -> Point:
     return (x, y)
 
 
-@compiled
+@compiled_merged
 def row_of(trip: Trip, scene: Scene, movers: Sequence[Mover]) -> int:
     """Return the robot's row among the movers, -1 where it is not in the frame."""
     for row in range(int(scene.mates)):
@@ -155,7 +155,7 @@ def row_of(trip: Trip, scene: Scene, movers: Sequence[Mover]) -> int:
     return -1
 
 
-@compiled
+@compiled_merged
 def _away_from_ball(trip: Trip, scene: Scene) -> Point:
     x, y, bx, by = trip.x, trip.y, scene.ball.x, scene.ball.y
     keep = STOP_DISTANCE + ROBOT_RADIUS + BALL_RADIUS
@@ -171,7 +171,7 @@ def _away_from_ball(trip: Trip, scene: Scene) -> Point:
     return (bx + dx * keep / gap, by + dy * keep / gap)
 
 
-@compiled
+@compiled_merged
 def _expelled(scene: Scene, x: float, y: float, gap: float) -> Point:
     """Move (x, y) out of the defence area at +x, grown by ``gap``, over its nearest edge."""
     front = scene.half_length - scene.area_depth - gap
@@ -183,7 +183,7 @@ def _expelled(scene: Scene, x: float, y: float, gap: float) -> Point:
     return (x, side if y >= 0.0 else -side)
 
 
-@compiled
+@compiled_merged
 def is_open(trip: Trip, scene: Scene, x: float, y: float, their_gap: float) -> bool:
     """Return whether the robot may pass (x, y), with ``their_gap`` to the opponents' defence area [m]."""
     half_length, depth, width = scene.half_length, scene.area_depth, scene.area_width
@@ -198,7 +198,7 @@ def is_open(trip: Trip, scene: Scene, x: float, y: float, their_gap: float) -> b
     return trip.goalkeeper > 0.0 or not in_area(-x, y, half_length, depth, width, ROBOT_RADIUS)
 
 
-@compiled
+@compiled_merged
 def from_ball(trip: Trip, scene: Scene) -> float:
     """Return the least distance of its centre from the ball's [m], 0 if the ball is no obstacle."""
     if scene.keeps_off > 0.0:

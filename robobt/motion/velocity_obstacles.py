@@ -16,7 +16,7 @@ from typing import Protocol
 
 from robobt.motion.scene import ROBOT_AREA_GAP, from_ball, is_open, row_of
 from robobt.world.avoiding import MARGIN, free_time
-from robobt.world.compiled import compiled, record_dtype, records
+from robobt.world.compiled import compiled, compiled_merged, record_dtype, records
 from robobt.world.geometry import Point
 from robobt.world.records import Limits, Mover, Robot, Scene, Trip
 from robobt.world.state import ROBOT_RADIUS
@@ -118,13 +118,13 @@ def clear_velocity(
     return best
 
 
-@compiled
+@compiled_merged
 def is_moving(mover: Mover) -> bool:
     """Return whether a robot is evaded by velocity instead of by the path."""
     return mover.vx * mover.vx + mover.vy * mover.vy > MOVES * MOVES
 
 
-@compiled
+@compiled_merged
 def _any_moves(movers: Sequence[Mover], skip: int, x: float, y: float, speed: float) -> bool:
     """Return whether any robot nearby moves; usually none does."""
     for i, mover in enumerate(movers):
@@ -133,7 +133,7 @@ def _any_moves(movers: Sequence[Mover], skip: int, x: float, y: float, speed: fl
     return False
 
 
-@compiled
+@compiled_merged
 def _is_near(mover: Mover, x: float, y: float, speed: float) -> bool:
     """Return whether a robot at (x, y) that drives so fast can meet this one soon enough to matter."""
     reach = MOVES_APART + (speed + hypot(mover.vx, mover.vy)) * _FREE_TIME_HORIZON

@@ -8,7 +8,7 @@ from math import cos, log, pi, sqrt
 import numpy as np
 
 from robobt.sim.records import ArenaState, IntArray
-from robobt.world.compiled import compiled_inline
+from robobt.world.compiled import compiled_merged
 
 _MODULUS = 2**31 - 1
 """A prime. Source of it and of the multiplier: Park, Miller and Stockmeyer, 1993 (Lehmer's generator)."""
@@ -25,7 +25,7 @@ def seeded(seeds: Iterable[int]) -> IntArray:
     return np.array(hashed, dtype=np.int64) % (_MODULUS - 1) + 1
 
 
-@compiled_inline
+@compiled_merged
 def drawn_factor(state: ArenaState, deviation: float) -> float:
     """Draw a factor with mean 1 and this standard deviation, of a normal distribution cut off."""
     first, second = _drawn(state), _drawn(state)
@@ -33,7 +33,7 @@ def drawn_factor(state: ArenaState, deviation: float) -> float:
     return 1.0 + deviation * min(max(normal, -_WIDEST), _WIDEST)
 
 
-@compiled_inline
+@compiled_merged
 def _drawn(state: ArenaState) -> float:
     """Draw a number between 0 and 1, both excluded."""
     state.chance = state.chance * _MULTIPLIER % _MODULUS

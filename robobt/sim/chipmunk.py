@@ -25,7 +25,7 @@ from numpy.typing import NDArray
 from pymunk._chipmunk_cffi import ffi, lib
 
 from robobt.sim.records import BODY, Body, IntArray, Records, size
-from robobt.world.compiled import Index, compiled_lean, record_dtype
+from robobt.world.compiled import Index, compiled_merged, record_dtype
 
 ROW = size(BODY)
 """Numbers of a body's row: x, y, angle, vx, vy, angular velocity."""
@@ -114,7 +114,7 @@ call_step = cast(Callable[..., None], _call_step)
 call_each_body = cast(Callable[..., None], _call_each_body)
 
 
-@compiled_lean
+@compiled_merged
 def load_bodies(places: NDArray[np.uint64], bodies: Records[Body]) -> None:
     """Fill ``bodies`` (k,) from those at the addresses ``places`` (k,), after a step."""
     for i in range(places.shape[0]):
@@ -128,7 +128,7 @@ def load_bodies(places: NDArray[np.uint64], bodies: Records[Body]) -> None:
         body.omega = load(place + np.uint64(_OMEGA_OFFSET))
 
 
-@compiled_lean
+@compiled_merged
 def store_bodies(places: NDArray[np.uint64], bodies: Records[Body]) -> None:
     """Set the bodies at the addresses ``places`` (k,) from ``bodies`` (k,), right before a step.
 

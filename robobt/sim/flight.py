@@ -17,7 +17,7 @@ from math import sqrt
 from robobt.sim.records import Arena
 from robobt.sim.sweep import in_a_wall
 from robobt.world.ball_model import GRAVITY, LOWEST_HOP
-from robobt.world.compiled import compiled_lean
+from robobt.world.compiled import compiled_merged
 from robobt.world.state import BALL_RADIUS, ROBOT_HEIGHT, ROBOT_RADIUS
 
 _STADIUM = 4
@@ -27,7 +27,7 @@ _LEFT_WALL, _FRONT_WALL = 0, 2
 """Which of them bound y and x."""
 
 
-@compiled_lean
+@compiled_merged
 def _above_something(arena: Arena) -> bool:
     """Return whether a robot or a goal's wall is below the ball."""
     body = arena.body
@@ -39,7 +39,7 @@ def _above_something(arena: Arena) -> bool:
     return in_a_wall(body.x, body.y, arena.walls[_STADIUM:])
 
 
-@compiled_lean
+@compiled_merged
 def fly(arena: Arena, dt: float) -> bool:
     """Let the ball fly for one step; return whether it stays above robots and goals.
 
@@ -74,7 +74,7 @@ def fly(arena: Arena, dt: float) -> bool:
     return floor > 0.0
 
 
-@compiled_lean
+@compiled_merged
 def pass_over(arena: Arena, dt: float) -> None:
     """Move a high ball, and back where it meets a wall around the field."""
     body, ball, bounce = arena.body, arena.ball, arena.parameters.contact.wall_restitution
@@ -82,7 +82,7 @@ def pass_over(arena: Arena, dt: float) -> None:
     body.y, ball.vy = _along(body.y, ball.vy, ball.move_y * dt, arena.walls[_LEFT_WALL].y0, bounce)
 
 
-@compiled_lean
+@compiled_merged
 def _along(place: float, speed: float, way: float, wall: float, bounce: float) -> tuple[float, float]:
     """Return where a ball is along one axis, and its speed, after a ``way`` on which a wall may be."""
     limit = wall - BALL_RADIUS

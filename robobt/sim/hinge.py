@@ -9,7 +9,7 @@ from __future__ import annotations
 from math import cos, sin
 
 from robobt.sim.records import Body, Hinge, Records, WheelDrive, Wheels
-from robobt.world.compiled import compiled_lean
+from robobt.world.compiled import compiled_merged
 
 _HINGE_SWEEPS = 4
 """Passes over the robots that hold the ball."""
@@ -18,7 +18,7 @@ _SOFTNESS = 0.2
 """Share of a gap between two hinges that is closed in a step, as ODE does by default."""
 
 
-@compiled_lean
+@compiled_merged
 def take_hold(body: Body, robot: Body, hinge: Hinge) -> None:
     """Hinge the ball to a robot at its present place."""
     c, s = cos(robot.heading), sin(robot.heading)
@@ -26,7 +26,7 @@ def take_hold(body: Body, robot: Body, hinge: Hinge) -> None:
     hinge.held, hinge.ahead, hinge.aside = 1.0, c * px + s * py, c * py - s * px
 
 
-@compiled_lean
+@compiled_merged
 def tie(robots: Records[Body], drives: Records[WheelDrive], carrier: int, w: Wheels, dt: float) -> None:
     """Keep all robots that hold the ball together with the robot that carries it.
 
@@ -65,7 +65,7 @@ def tie(robots: Records[Body], drives: Records[WheelDrive], carrier: int, w: Whe
             other.omega += (bx * jy - by * jx) * inertia
 
 
-@compiled_lean
+@compiled_merged
 def _arm(robot: Body, hinge: Hinge) -> tuple[float, float]:
     """Return from the robot's centre to its hinge [m]."""
     c, s = cos(robot.heading), sin(robot.heading)

@@ -57,7 +57,7 @@ from robobt.sim.roller import roll
 from robobt.sim.shell import drag, meet
 from robobt.sim.sweep import in_a_wall, sweep
 from robobt.sim.wheels import drive_wheels
-from robobt.world.compiled import compiled_inline, compiled_lean
+from robobt.world.compiled import compiled_inline, compiled_lean, compiled_merged
 from robobt.world.driving import drive, follow
 from robobt.world.geometry import FloatArray
 from robobt.world.state import BALL_RADIUS, RECEIVED_HEIGHT, ROBOT_HEIGHT
@@ -289,7 +289,7 @@ def _carry(arena: Arena, dt: float) -> None:
         ball.carrier = -1
 
 
-@compiled_inline
+@compiled_merged
 def _put_ball(arena: Arena, high: bool) -> tuple[float, float]:
     """Put the ball's body where it has contacts, for the length of a step; return where it is."""
     body, ball = arena.body, arena.ball
@@ -301,7 +301,7 @@ def _put_ball(arena: Arena, high: bool) -> tuple[float, float]:
     return x, y
 
 
-@compiled_inline
+@compiled_merged
 def _take_ball(arena: Arena, high: bool, x: float, y: float) -> None:
     """Apply the contacts of a step to the ball; a high ball continues from (x, y)."""
     body, ball = arena.body, arena.ball
@@ -315,7 +315,7 @@ def _take_ball(arena: Arena, high: bool, x: float, y: float) -> None:
         note_touch(arena)
 
 
-@compiled_lean
+@compiled_merged
 def _note(history: Records[Body], arena: Arena) -> None:
     """Record an arena's bodies after a step, with the ball's true state instead of the contacts' one."""
     for i in range(len(arena.bodies)):

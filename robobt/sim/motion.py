@@ -11,10 +11,10 @@ from __future__ import annotations
 from math import hypot
 
 from robobt.sim.records import Parameters, SimulatedBall
-from robobt.world.compiled import compiled_lean
+from robobt.world.compiled import compiled_merged
 
 
-@compiled_lean
+@compiled_merged
 def friction(ball: SimulatedBall, p: Parameters, dt: float) -> None:
     """Let a free ball slide and roll for ``dt``."""
     slide, roll, stop = p.ball.slide_deceleration, p.ball.roll_deceleration, p.ball.stop_speed

@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import cos, hypot, sin
 
 from robobt.sim.records import Body, Flight, Parameters, SimulatedBall
-from robobt.world.compiled import compiled_lean
+from robobt.world.compiled import compiled_lean, compiled_merged
 from robobt.world.records import Limits
 from robobt.world.state import BALL_RADIUS
 
@@ -29,7 +29,7 @@ def in_mouth(body: Body, robot: Body, p: Parameters, depth: float) -> bool:
     return bool(0.0 < ahead <= reach and abs(aside) <= p.half_mouth)
 
 
-@compiled_lean
+@compiled_merged
 def let_in(body: Body, ball: SimulatedBall, robot: Body, p: Parameters, dt: float) -> None:
     """Move a ball that comes within ``dt`` to where the kicker's sensor sees it.
 
@@ -49,7 +49,7 @@ def let_in(body: Body, ball: SimulatedBall, robot: Body, p: Parameters, dt: floa
         body.y += vy * time
 
 
-@compiled_lean
+@compiled_merged
 def keeps(body: Body, robot: Body, p: Parameters, held: bool) -> bool:
     """Return whether grSim's dribbler holds the ball from now on, as it decides once a frame.
 
@@ -97,7 +97,7 @@ def hold(body: Body, ball: SimulatedBall, robot: Body, p: Parameters, most: floa
     ball.pull_y += s * want_along + c * want_across
 
 
-@compiled_lean
+@compiled_merged
 def carry(body: Body, ball: SimulatedBall, robot: Body, p: Parameters, dt: float) -> None:
     """Compute the mean velocity that keeps the ball where it sits in the mouth while the robot moves."""
     c, s = cos(robot.heading), sin(robot.heading)
@@ -114,7 +114,7 @@ def carry(body: Body, ball: SimulatedBall, robot: Body, p: Parameters, dt: float
     ball.move_y = (y - body.y) / dt
 
 
-@compiled_lean
+@compiled_merged
 def kick(
     body: Body,
     ball: SimulatedBall,

@@ -6,7 +6,7 @@ from math import cos, pi, sin
 
 from robobt.sim.mouth import in_mouth
 from robobt.sim.records import ARENA, BODY, FLIGHT, SEEN_BALL, Arena, Body, BoolArray
-from robobt.world.compiled import compiled_inline, compiled_lean
+from robobt.world.compiled import compiled_lean, compiled_merged
 from robobt.world.geometry import FloatArray
 from robobt.world.state import BALL_RADIUS, RECEIVED_HEIGHT, ROBOT_RADIUS
 
@@ -14,7 +14,7 @@ _REPORTED_TOUCH_GAP = 2e-3
 """Gap between ball and robot that still counts as a touch [m]."""
 
 
-@compiled_inline
+@compiled_merged
 def note_touch(arena: Arena) -> None:
     """Record the robot that touches the ball; if several do, one that did not touch it before."""
     body, ahead = arena.body, arena.parameters.front + BALL_RADIUS + _REPORTED_TOUCH_GAP
@@ -33,7 +33,7 @@ def note_touch(arena: Arena) -> None:
         arena.touch.robot = found
 
 
-@compiled_lean
+@compiled_merged
 def _report(robot: Body, out: Body) -> None:
     """Copy a robot's body, heading in (-pi, pi]."""
     out.x = robot.x

@@ -18,7 +18,7 @@ from math import cos, hypot, sin
 
 from robobt.sim.records import Arena, Body, Front, Parameters, Rub, SimulatedBall
 from robobt.world.ball_model import GRAVITY
-from robobt.world.compiled import compiled_lean
+from robobt.world.compiled import compiled_lean, compiled_merged
 from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS
 
 _CONTACTS = 3
@@ -43,7 +43,7 @@ _IDLE_SURFACE = -1.0
 """Marks a surface that moves up and down with the ball."""
 
 
-@compiled_lean
+@compiled_merged
 def _meet(
     body: Body,
     ball: SimulatedBall,
@@ -70,7 +70,7 @@ def _meet(
     return float(max(gap, 0.0) / -apart)
 
 
-@compiled_lean
+@compiled_merged
 def _arrives(body: Body, ball: SimulatedBall, robot: Body, front: Front, p: Parameters, dt: float) -> float:
     """Note where the ball meets a robot in this step; return when it bounces off the roller, else -1."""
     for k in range(_CONTACTS):
@@ -115,7 +115,7 @@ def _arrives(body: Body, ball: SimulatedBall, robot: Body, front: Front, p: Para
     return bounce
 
 
-@compiled_lean
+@compiled_merged
 def _press(ball: SimulatedBall, rub: Rub) -> None:
     """Improve the impulses of one contact and apply what changed."""
     nx, ny = rub.nx, rub.ny

@@ -14,7 +14,7 @@ from __future__ import annotations
 from math import cos, hypot, sin
 
 from robobt.sim.records import Body, Parameters, SimulatedBall, Wheels
-from robobt.world.compiled import compiled_lean
+from robobt.world.compiled import compiled_lean, compiled_merged
 from robobt.world.state import BALL_RADIUS
 
 _DEEP = 0.03
@@ -31,7 +31,7 @@ _FRONT_PLATE, _CORE_SPHERE = 0, 5
 """Parts of a robot: its front plate, the four wheels, and its core."""
 
 
-@compiled_lean
+@compiled_merged
 def _out_of_box(x: float, y: float, low: float, high: float, half: float) -> tuple[float, float, float]:
     """Return the normal and depth of a ball at a box [low, high] x [-half, half]; depth < 0 is apart.
 
@@ -92,7 +92,7 @@ def meet(body: Body, ball: SimulatedBall, robot: Body, p: Parameters, w: Wheels,
         _push_apart(body, ball, robot, nx, ny, p.softness * depth / dt, friction, p, w)
 
 
-@compiled_lean
+@compiled_merged
 def _push_apart(
     body: Body,
     ball: SimulatedBall,
@@ -134,7 +134,7 @@ def _push_apart(
     ball.spin_y -= loss * ny
 
 
-@compiled_lean
+@compiled_merged
 def drag(body: Body, ball: SimulatedBall, robot: Body, p: Parameters, w: Wheels, dt: float) -> None:
     """Let a held ball weigh on its robot: its inertia, and its friction with the ground.
 

@@ -5,11 +5,11 @@ from __future__ import annotations
 from math import cos, sin, sqrt
 
 from robobt.sim.records import Arena, Parameters, Records, Solver, WallBox
-from robobt.world.compiled import compiled_lean
+from robobt.world.compiled import compiled_lean, compiled_merged
 from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS
 
 
-@compiled_lean
+@compiled_merged
 def _enters(
     start: float, step: float, low: float, high: float, t_in: float, t_out: float
 ) -> tuple[float, float]:
@@ -24,7 +24,7 @@ def _enters(
     return max(t_in, first), min(t_out, second)
 
 
-@compiled_lean
+@compiled_merged
 def _meets_disc(px: float, py: float, dx: float, dy: float, reach: float) -> tuple[float, float]:
     """Return when p + t * d enters and leaves the disc of radius ``reach`` at the origin, else (2, -1)."""
     a = dx * dx + dy * dy
@@ -36,7 +36,7 @@ def _meets_disc(px: float, py: float, dx: float, dy: float, reach: float) -> tup
     return (-b - root) / a, (-b + root) / a
 
 
-@compiled_lean
+@compiled_merged
 def _meets_box(x: float, y: float, dx: float, dy: float, box: WallBox, radius: float) -> float:
     """Return when in (0, 1) a moving disc first meets a box, 1 if not: the box grown by a rounded rim."""
     first = 1.0
@@ -122,7 +122,7 @@ def sweep(arena: Arena, solver: Solver, dt: float) -> tuple[float, float, float]
     return share, met_x, met_y
 
 
-@compiled_lean
+@compiled_merged
 def in_a_wall(x: float, y: float, walls: Records[WallBox]) -> bool:
     """Return whether a ball reaches into one of the boxes."""
     for k in range(len(walls)):

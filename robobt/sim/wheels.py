@@ -20,7 +20,7 @@ from __future__ import annotations
 from math import copysign, cos, hypot, sin
 
 from robobt.sim.records import Body, Followed, Records, Rim, WheelDrive, Wheels
-from robobt.world.compiled import compiled_lean
+from robobt.world.compiled import compiled_lean, compiled_merged
 from robobt.world.driving import reached
 from robobt.world.records import Limits
 
@@ -33,7 +33,7 @@ _WHEEL_SWEEPS = 8
 """Passes over the contacts; the impulses of the last step are where they start."""
 
 
-@compiled_lean
+@compiled_merged
 def _plan(robot: Body, followed: Followed, limits: Limits, w: Wheels, rims: Records[Rim]) -> None:
     """Turn the velocity to follow into the wheel speeds after the next, from how fast the robot is now."""
     vx, vy, turn = reached(followed, limits)

@@ -46,6 +46,15 @@ def compiled_inline(function: Function) -> Function:
     return _compiled(function, _nrt=False, forceinline=True)
 
 
+def compiled_merged(function: Function) -> Function:
+    """Make a function part of the compiled functions that call it, each of which is compiled with its code.
+
+    For small functions, and for those with one caller: to compile them on their own takes longer. One that
+    is large makes its callers slow to compile. Python can call it too.
+    """
+    return _compiled(function, inline="always")
+
+
 def _compiled(function: Function, **options: Any) -> Function:
     if not compiles():
         return function
@@ -70,9 +79,9 @@ def compilable(function: Function) -> Function:
     """Leave a function as it is for Python, which calls it faster so, and let compiled code call it too."""
     if not compiles():
         return function
-    from robobt.world.compiler import register_jitable
+    from robobt.world.compiler import inlined_function
 
-    return register_jitable(function)
+    return inlined_function(function)
 
 
 @cache

@@ -1,25 +1,37 @@
-"""The cache key of compiled code: everything that it depends on.
+"""The cache key of compiled code: everything that it depends on, and nothing else.
 
-Numba's own key has only the file of the compiled function. After a change of another file, a function called
-from it would keep running as compiled before.
+Numba's own key has the compiled function, and the time and size of its file. After a change of another file,
+a function called from it would keep running as compiled before; and after a change of a comment, all
+functions of the file would be compiled again.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+import sys
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import suppress
 from functools import cached_property
 from hashlib import sha256
-from types import CodeType, FunctionType
+from pathlib import Path
+from types import CodeType, FunctionType, ModuleType
+from uuid import uuid4
 
 import numpy as np
 from numba.core.caching import FunctionCache, IndexDataCacheFile
 from numba.core.dispatcher import Dispatcher
 from numba.core.event import Event, Listener, register, trigger_event
 
+from robobt.world import compiled_views
 from robobt.world.compiled_lock import CompilingTurn
 
 COMPILING = "numba:compile"
 """Numba's name for the event that a function is compiled."""
+
+_MOST_KEPT = 16
+"""Number of versions of a function that are kept: for other types, or from before a change."""
+
+_GENERATED = sha256(Path(compiled_views.__file__).read_bytes()).hexdigest()
+"""What changes with the instructions that this package generates itself."""
 
 _CONSTANTS = (bool, int, float, str, tuple, frozenset, np.generic, np.dtype)
 
@@ -41,7 +53,10 @@ register(COMPILING, _Failed())  # type: ignore[no-untyped-call]
 
 
 class _Index(IndexDataCacheFile):
-    """Numba's cache index, which may name types that no longer exist."""
+    """Numba's cache index, which may name types that no longer exist.
+
+    A data file never changes: a process that has read the index finds the version that it asks for, or none.
+    """
 
     def _load_index(self) -> dict[object, str]:
         try:
@@ -50,14 +65,37 @@ class _Index(IndexDataCacheFile):
             return {}
         return kept
 
+    def save(self, key: object, data: object) -> None:
+        """Keep a version, and remove those that were kept first if there are too many.
+
+        Args:
+            key: of the version.
+            data: its code.
+        """
+        kept = self._load_index()
+        name = self._data_name(uuid4().int >> 64)  # type: ignore[no-untyped-call]
+        # The code before the index that names it.
+        self._save_data(name, data)  # type: ignore[no-untyped-call]
+        removed = [kept.pop(key)] if key in kept else []
+        removed += [kept.pop(next(iter(kept))) for _ in range(len(kept) + 1 - _MOST_KEPT)]
+        self._save_index({**kept, key: name})  # type: ignore[no-untyped-call]
+        for old in removed:
+            with suppress(OSError):
+                Path(self._data_path(old)).unlink()  # type: ignore[no-untyped-call]
+
 
 class DeepCache(FunctionCache):
     """Numba's cache of a function's compiled code, with the called functions in its key."""
 
-    def __init__(self, function: Callable[..., object]) -> None:
+    def __init__(self, function: Callable[..., object], options: Mapping[str, object]) -> None:
         super().__init__(function)  # type: ignore[no-untyped-call]
-        base, stamp = self._impl.filename_base, self._impl.locator.get_source_stamp()
-        self._cache_file = _Index(self._cache_path, base, stamp)  # type: ignore[no-untyped-call]
+        self._options = _told_options(options)
+        # Not by line and time of the file: the key has what matters in it.
+        name = f"{Path(function.__code__.co_filename).stem}.{function.__qualname__}".replace("<", "").replace(
+            ">", ""
+        )
+        base = f"{name}.py{sys.version_info[0]}{sys.version_info[1]}"
+        self._cache_file = _Index(self._cache_path, base, "")  # type: ignore[no-untyped-call]
 
     def load_overload(self, sig: object, target_context: object) -> object:
         """Return the code kept for these types; None if this process has to compile it.
@@ -94,7 +132,7 @@ class DeepCache(FunctionCache):
 
     def _index_key(self, sig: object, codegen: object) -> tuple[object, ...]:
         own: tuple[object, ...] = super()._index_key(sig, codegen)  # type: ignore[no-untyped-call]
-        return (*own, self._key)
+        return (*own, self._key, self._options, _GENERATED)
 
     @cached_property
     def _key(self) -> str:
@@ -112,24 +150,40 @@ def key_of(function: Callable[..., object]) -> str:
 
 def _parts(function: object, seen: set[int]) -> Iterator[str]:
     if isinstance(function, Dispatcher):
+        yield _told_options(function.targetoptions)
         function = function.py_func
     if not isinstance(function, FunctionType) or id(function) in seen:
         return
     seen.add(id(function))
     yield from _code(function.__code__)
-    yield _told(function.__defaults__)
-    for name in sorted(_names(function.__code__)):
-        value = function.__globals__.get(name)
-        if isinstance(value, np.ndarray):
-            yield f"{name}={value.tolist()!r}"
-        elif isinstance(value, _CONSTANTS):
-            yield f"{name}={_told(value)}"
-        elif isinstance(value, type):
-            # A named tuple's fields are read by their places, an enumeration's members by their values.
-            members = {key: one.value for key, one in getattr(value, "__members__", {}).items()}
-            yield f"{name}={getattr(value, '_fields', ())}{members}"
-        elif not str(getattr(value, "__module__", "")).startswith(("numpy", "numba")):
-            yield from _parts(value, seen)
+    yield _told((function.__defaults__, sorted((function.__kwdefaults__ or {}).items())))
+    names = _names(function.__code__)
+    for name in sorted(names):
+        yield from _value(name, function.__globals__.get(name), names, seen)
+    for name, cell in zip(function.__code__.co_freevars, function.__closure__ or (), strict=True):
+        yield from _value(name, cell.cell_contents, names, seen)
+
+
+def _value(name: str, value: object, names: set[str], seen: set[int]) -> Iterator[str]:
+    """Yield what changes with a value that code reads by its name, itself or an attribute among ``names``."""
+    if isinstance(value, np.ndarray):
+        yield f"{name}={value.tolist()!r}"
+    elif isinstance(value, _CONSTANTS):
+        yield f"{name}={_told(value)}"
+    elif isinstance(value, type):
+        # A named tuple's fields are read by their places, an enumeration's members by their values.
+        members = {key: one.value for key, one in getattr(value, "__members__", {}).items()}
+        yield f"{name}={getattr(value, '_fields', ())}{members}"
+    elif isinstance(value, ModuleType):
+        if value.__name__.partition(".")[0] not in ("numpy", "numba", *sys.stdlib_module_names):
+            for attribute in sorted(names & vars(value).keys()):
+                yield from _value(f"{name}.{attribute}", vars(value)[attribute], names, seen)
+    elif not str(getattr(value, "__module__", "")).startswith(("numpy", "numba")):
+        yield from _parts(value, seen)
+
+
+def _told_options(options: Mapping[str, object]) -> str:
+    return repr(sorted(options.items()))
 
 
 def _names(code: CodeType) -> set[str]:

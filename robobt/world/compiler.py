@@ -10,10 +10,13 @@ from collections.abc import Callable
 from contextlib import suppress
 from typing import Any, TypeVar, cast
 
-from numba import njit
 from numba.core.event import Event, TimingListener, register
-from numba.extending import register_jitable as register_jitable
+from numba.core.registry import CPUDispatcher
+from numba.core.sigutils import normalize_signature
+from numba.core.types import unliteral
+from numba.extending import register_jitable
 
+from robobt.world import compiled_views as compiled_views
 from robobt.world.compiled_key import COMPILING, DeepCache
 
 _log = logging.getLogger(__name__)
@@ -27,6 +30,34 @@ _REPORTED_COMPILE_TIME = 2.0
 Function = TypeVar("Function", bound=Callable[..., object])
 
 
+class _CalledByPython(CPUDispatcher):
+    """A function that Python calls; compiled code that calls it is given another, without Python's way in.
+
+    That way, which takes Python's objects apart and checks them, is a fifth of the work of compiling.
+    """
+
+    def __init__(self, function: Callable[..., object], options: dict[str, Any]) -> None:
+        super().__init__(function, targetoptions=options)
+        self._part: Any = CPUDispatcher(function, targetoptions={**options, "no_cpython_wrapper": True})
+        made: Any
+        for made in (self, self._part):
+            # A read-only installation, run by a user without a home folder, compiles each time.
+            with suppress(RuntimeError):
+                made._cache = DeepCache(function, made.targetoptions)
+
+    def get_call_template(self, args: Any, kws: Any) -> Any:
+        # One version serves a constant and any other argument of that type.
+        args, kws = tuple(map(unliteral, args)), {name: unliteral(kind) for name, kind in kws.items()}  # type: ignore[no-untyped-call]
+        return self._for(args).get_call_template(args, kws)
+
+    def get_overload(self, sig: Any) -> Any:
+        return self._for(normalize_signature(sig)[0]).get_overload(sig)  # type: ignore[no-untyped-call]
+
+    def _for(self, args: Any) -> Any:
+        # What has been compiled for Python already is not compiled again.
+        return super() if args in self.overloads else self._part
+
+
 def compile_function(function: Function, **options: Any) -> Function:
     """Return a function that is compiled at first use, and kept if a folder is writable.
 
@@ -34,10 +65,20 @@ def compile_function(function: Function, **options: Any) -> Function:
         function: the function.
         options: numba's.
     """
-    made = njit(**options)(function)
-    # A read-only installation, run by a user without a home folder, has no cache and compiles each time.
-    with suppress(RuntimeError):
-        made._cache = DeepCache(function)
+    made: Any = _CalledByPython(function, {"nopython": True, "no_cfunc_wrapper": True, **options})
+    return cast(Function, made)
+
+
+def inlined_function(function: Function) -> Function:
+    """Return a function as it is, which becomes part of each compiled function that calls it.
+
+    Args:
+        function: the function.
+    """
+    # By two attributes numba knows that the code of a function is to go into its callers. That the function
+    # is registered gives its name a type there.
+    made: Any = register_jitable(function)
+    made.targetoptions, made.py_func = {"inline": "always"}, function
     return cast(Function, made)
 
 

@@ -19,7 +19,7 @@ from typing import Any, Protocol
 import numpy as np
 
 from robobt.world.avoiding import GO_TO_BALL_AMONG_ROBOTS
-from robobt.world.compiled import compiled, compiled_lean, record_dtype
+from robobt.world.compiled import compiled, compiled_merged, record_dtype
 from robobt.world.geometry import FloatArray, wrap_angle
 from robobt.world.memory import memory_of, with_memory
 from robobt.world.observation import (
@@ -151,7 +151,7 @@ def find_observation(name: str) -> ObservationSpec | None:
     return OBSERVATIONS.get(name) or OWN_OBSERVATIONS.get(name)
 
 
-@compiled_lean
+@compiled_merged
 def _observe_go_to_ball(robot: Robot, ball: Ball, seen: Any) -> None:
     c, s = cos(robot.heading), sin(robot.heading)
     dx, dy = ball.x - robot.x, ball.y - robot.y
@@ -167,13 +167,13 @@ def _observe_go_to_ball(robot: Robot, ball: Ball, seen: Any) -> None:
     seen.omega = robot.omega
 
 
-@compiled_lean
+@compiled_merged
 def _observe_goal(robot: Robot, ball: Ball, goal_x: float, seen: Any) -> None:
     to_goal = atan2(-ball.y, goal_x - ball.x) - robot.heading
     seen.sin_goal, seen.cos_goal = sin(to_goal), cos(to_goal)
 
 
-@compiled_lean
+@compiled_merged
 def _observe_shoot(robot: Robot, ball: Ball, goal_x: float, post_y: float, seen: Any) -> None:
     c, s = cos(robot.heading), sin(robot.heading)
     to_upper = atan2(post_y - robot.y, goal_x - robot.x) - robot.heading
@@ -186,7 +186,7 @@ def _observe_shoot(robot: Robot, ball: Ball, goal_x: float, post_y: float, seen:
     seen.sin_lower_post, seen.cos_lower_post = sin(to_lower), cos(to_lower)
 
 
-@compiled_lean
+@compiled_merged
 def _observe_shot(shooter: Place, target: Place, opponent: Place, seen: Any) -> None:
     dx, dy = target.x - shooter.x, target.y - shooter.y
     length = hypot(dx, dy)
@@ -197,7 +197,7 @@ def _observe_shot(shooter: Place, target: Place, opponent: Place, seen: Any) -> 
     seen.opponent_distance, seen.along, seen.across = hypot(along, across), along, across
 
 
-@compiled_lean
+@compiled_merged
 def _observe_scene(shooter: Robot, ball: Ball, target: Place, seen: Any) -> tuple[float, float, float]:
     """Fill in all but the opponents; return cosine and sine of the shot's direction, and its length."""
     dx, dy = target.x - shooter.x, target.y - shooter.y
@@ -211,7 +211,7 @@ def _observe_scene(shooter: Robot, ball: Ball, target: Place, seen: Any) -> tupl
     return c, s, length
 
 
-@compiled_lean
+@compiled_merged
 def _observe_opponents(
     shooter: Robot,
     line: tuple[float, float, float],

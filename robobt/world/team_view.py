@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from robobt.world.compiled import compilable, compiled, compiled_lean
+from robobt.world.compiled import compilable, compiled, compiled_merged
 from robobt.world.geometry import FloatArray, Point
 from robobt.world.observation import Group, ObservationSpec, entries, kinematics, motion, record_of, turned
 from robobt.world.records import BALL as BALL_RECORD
@@ -159,12 +159,12 @@ def team_view_rows(
     return rows
 
 
-@compiled_lean
+@compiled_merged
 def _size(places: Places) -> int:
     return _OWN + _EACH * (places.mates + places.opponents) + places.told
 
 
-@compiled_lean
+@compiled_merged
 def _fill_rows(
     robots: NDArray[np.record],
     balls: NDArray[np.record],
@@ -190,7 +190,7 @@ def _fill_rows(
             _nearest(robots[i], index, first, last, False, c, s, away[places.mates :], opponents)
 
 
-@compiled_lean
+@compiled_merged
 def _observe(
     robots: Sequence[Robot], ball: Ball, index: int, first: int, last: int, goal: Point, row: FloatArray
 ) -> Point:
@@ -225,7 +225,7 @@ def _observe(
     return c, s
 
 
-@compiled_lean
+@compiled_merged
 def _nearest(
     robots: Sequence[Robot],
     index: int,

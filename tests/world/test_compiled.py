@@ -12,7 +12,8 @@ from typing import Any
 import numpy as np
 import pytest
 from numba import TypingError, njit
-from numba.core.event import install_listener, register, unregister
+from numba.core.caching import NullCache
+from numba.core.event import Event, Listener, install_listener, register, unregister
 from pydantic import BaseModel
 
 import robobt
@@ -23,8 +24,10 @@ from robobt.world.compiled import (
     compiled,
     compiled_inline,
     compiled_lean,
+    compiled_merged,
     numbers_dtype,
     numbers_of,
+    record_dtype,
     timing_compilation,
 )
 from robobt.world.compiler import TOLD, CompilingTold
@@ -37,7 +40,7 @@ def test_where_nothing_is_compiled_functions_stay_as_they_are(monkeypatch: pytes
     def double(x: float) -> float:
         return 2.0 * x
 
-    for decorator in (compiled, compiled_lean, compiled_inline, compilable):
+    for decorator in (compiled, compiled_lean, compiled_inline, compiled_merged, compilable):
         assert decorator(double) is double
 
 
@@ -116,6 +119,88 @@ def test_compiling_is_timed_and_what_is_compiled_already_is_not() -> None:
         first = compiling()
         grown(2.0)
         assert compiling() == first > 0.0
+
+
+@compilable
+def _halved(x: float) -> float:
+    return 0.5 * x
+
+
+@compiled_merged
+def _lifted(x: float) -> float:
+    return _halved(x) + 1.0
+
+
+@compiled
+def _scaled(x: float, twice: bool) -> float:
+    return 2.0 * x if twice else x
+
+
+@compiled
+def _summed(x: float) -> float:
+    return _lifted(x) + _scaled(x, True) + _scaled(x, False)
+
+
+class _Compilations(Listener):
+    """The names of the functions that are compiled."""
+
+    def __init__(self) -> None:
+        self.names: list[str] = []
+
+    def on_start(self, event: Event) -> None:
+        if event.data is not None:
+            self.names.append(event.data["dispatcher"].__name__)
+
+    def on_end(self, event: Event) -> None:
+        pass
+
+
+def test_functions_are_compiled_once_and_merged_ones_with_their_callers(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    listener = _Compilations()
+    for function in (_summed, _scaled, _lifted):
+        made: Any = function
+        monkeypatch.setattr(made, "_cache", NullCache())
+        monkeypatch.setattr(made._part, "_cache", NullCache())
+    with install_listener("numba:compile", listener):
+        assert _summed(3.0) == 11.5
+    # The constants True and False are no types of their own.
+    assert listener.names == ["_summed", "_scaled"]
+
+
+def test_python_can_call_what_is_compiled_for_compiled_code_only() -> None:
+    assert _summed(3.0) == 11.5
+    assert _scaled(3.0, True) == 6.0
+    assert _lifted(3.0) == 2.5
+    assert _halved(3.0) == 1.5
+
+
+class _Pair:
+    first: float
+    second: float
+
+
+_PAIR = record_dtype(_Pair)
+
+
+@compiled
+def _differences(rows: np.ndarray) -> np.ndarray:
+    pairs = rows.view(_PAIR)
+    return np.array([pair.second - pair.first for pair in pairs.ravel()])
+
+
+def test_compiled_code_views_an_array_as_records() -> None:
+    rows = np.arange(12.0).reshape(3, 4) ** 2
+    assert _differences(rows).tolist() == [1.0, 5.0, 9.0, 13.0, 17.0, 21.0]
+    assert _differences(rows[::2]).tolist() == [1.0, 5.0, 17.0, 21.0]
+    assert _differences(rows[:, :0]).tolist() == []
+
+
+@pytest.mark.parametrize("columns", [slice(3), slice(None, None, 2)])
+def test_an_array_that_holds_no_records_is_refused(columns: slice) -> None:
+    with pytest.raises(ValueError, match="does not hold records"):
+        _differences(np.arange(12.0).reshape(3, 4)[:, columns])
 
 
 @pytest.fixture

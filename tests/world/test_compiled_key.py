@@ -7,12 +7,13 @@ import sys
 from collections.abc import Callable, Iterator
 from enum import IntEnum
 from pathlib import Path
+from types import ModuleType
 from typing import NamedTuple
 
 import numpy as np
 import pytest
 
-from robobt.world.compiled_key import key_of
+from robobt.world.compiled_key import _Index, key_of
 from tests.conftest import StartPython
 from tests.waiting import LIMIT
 
@@ -84,6 +85,31 @@ def test_code_is_compiled_anew_where_something_that_it_calls_has_changed(run: Ru
     assert answer(run, 3.0, 0.75) == ["30.75"]
     # And what was there before is there still.
     assert len(answer(run, 2.0, 0.5)) == 2
+
+
+def test_an_edit_that_changes_no_code_leaves_compiled_code_as_it_is(run: Run) -> None:
+    assert answer(run, 2.0, 0.5) == ["20.5"]
+    Path("outer.py").write_text("# A comment, which moves all lines.\n" + OUTER)
+    assert len(run("outer.py")) == 2
+    Path("outer.py").write_text(OUTER.replace("return inner(x)", "return inner(x) + 1.0"))
+    assert run("outer.py") == ["21.5"]
+
+
+def test_code_is_compiled_anew_with_other_options(run: Run) -> None:
+    assert answer(run, 2.0, 0.5) == ["20.5"]
+    for file, decorator in (("outer.py", "compiled"), ("inner.py", "compilable")):
+        text = Path(file).read_text().replace(f"import {decorator}", "import compiled_lean")
+        Path(file).write_text(text.replace(f"@{decorator}", "@compiled_lean"))
+        assert run("outer.py") == ["20.5"]
+
+
+def test_few_versions_are_kept(tmp_path: Path) -> None:
+    index = _Index(str(tmp_path), "function", "")
+    for key in range(20):
+        index.save(key, str(key))
+    index.save(10, "ten")
+    assert [index.load(key) for key in (3, 4, 10, 19)] == [None, "4", "ten", "19"]
+    assert len(list(tmp_path.glob("*.nbc"))) == 16
 
 
 KINDS = """
@@ -166,6 +192,29 @@ def test_a_key_follows_defaults(monkeypatch: pytest.MonkeyPatch) -> None:
     assert key_of(scaled) != before
 
 
+def test_a_key_follows_what_an_inner_function_refers_to() -> None:
+    def adding(by: float, inner: Callable[[float], float]) -> Callable[[float], float]:
+        return lambda x: inner(x) + by
+
+    plain = key_of(adding(1.0, lambda x: x))
+    assert key_of(adding(1.0, lambda x: x)) == plain
+    assert key_of(adding(2.0, lambda x: x)) != plain != key_of(adding(1.0, lambda x: 2.0 * x))
+
+
+def area(radius: float) -> float:
+    return own_constants.PI * radius * radius
+
+
+own_constants = ModuleType("own_constants")
+own_constants.PI = 3.0  # type: ignore[attr-defined]
+
+
+def test_a_key_follows_the_constants_of_another_module(monkeypatch: pytest.MonkeyPatch) -> None:
+    before = key_of(area)
+    monkeypatch.setattr(own_constants, "PI", 3.14)
+    assert key_of(area) != before
+
+
 def test_a_key_follows_sets() -> None:
     one, other = (eval(f"lambda x: x in {{{values}}}") for values in ("1, 2", "1, 3"))
     assert key_of(one) != key_of(other)
@@ -185,13 +234,15 @@ class Sleep(Listener):
     def on_start(self, event):
         time.sleep(0.5)
     def on_end(self, event):
-        pass
+        global compilations
+        compilations += event.data is not None
+compilations = 0
 register("numba:compile", Sleep())
 if __name__ == "__main__":
     open(f"ready-{sys.argv[1]}", "w").close()
     while not os.path.exists(f"ready-{1 - int(sys.argv[1])}"):
         time.sleep(0.01)
-    print(outer(10.0), sum(outer.stats.cache_misses.values()) + sum(inner.stats.cache_misses.values()))
+    print(outer(10.0), compilations)
 """
 
 

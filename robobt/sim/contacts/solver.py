@@ -42,7 +42,7 @@ from robobt.sim.records import (
     size,
 )
 from robobt.sim.settings import SimSettings
-from robobt.world.compiled import compiled_inline, compiled_lean
+from robobt.world.compiled import compiled_lean, compiled_merged
 from robobt.world.geometry import FloatArray
 
 _SETTLED_IMPULSE = 1e-12
@@ -165,7 +165,7 @@ def collide(bodies: Records[Body], shapes: Shapes, it: Solving, dt: float) -> No
             seen.when = clock
 
 
-@compiled_inline
+@compiled_merged
 def _prepare(bodies: Records[Body], solver: Solver, it: Solving, count: int, dt: float) -> None:
     """Prepare the contacts, and apply the impulses of the last step again."""
     robots, clock = len(bodies) - 1, it.masses.clock
@@ -201,7 +201,7 @@ def _prepare(bodies: Records[Body], solver: Solver, it: Solving, count: int, dt:
             _push(it.moving[row.one], it.moving[row.other], row, row.normal, row.tangent)
 
 
-@compiled_lean
+@compiled_merged
 def _push(a: Moving, b: Moving, row: Contact, along: float, across: float) -> None:
     """Apply an impulse to both bodies of a contact."""
     jx, jy = row.nx * along - row.ny * across, row.ny * along + row.nx * across
@@ -213,7 +213,7 @@ def _push(a: Moving, b: Moving, row: Contact, along: float, across: float) -> No
     b.omega += b.inertia * (row.r2x * jy - row.r2y * jx)
 
 
-@compiled_inline
+@compiled_merged
 def _solve(solver: Solver, contacts: Records[Contact], moving: Records[Moving], count: int) -> None:
     """Improve the impulses, contact by contact, until they agree."""
     for _ in range(int(solver.iterations)):

@@ -6,7 +6,7 @@ from math import cos, inf, sin, sqrt
 from typing import NamedTuple
 
 from robobt.sim.records import Body, Contact, Edge, HullPart, Records, Solver, WallBox
-from robobt.world.compiled import compiled_inline, compiled_lean
+from robobt.world.compiled import compiled_inline, compiled_lean, compiled_merged
 from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS
 
 
@@ -35,7 +35,7 @@ def find(bodies: Records[Body], shapes: Shapes, contacts: Records[Contact]) -> i
     return _find_ball(bodies, shapes, contacts, count, discs + robots * robots)
 
 
-@compiled_inline
+@compiled_merged
 def _find_walls(bodies: Records[Body], shapes: Shapes, contacts: Records[Contact]) -> int:
     """Fill in the contacts of bodies and walls; return how many."""
     solver, walls = shapes.solver, shapes.walls
@@ -62,7 +62,7 @@ def _find_walls(bodies: Records[Body], shapes: Shapes, contacts: Records[Contact
     return count
 
 
-@compiled_inline
+@compiled_merged
 def _find_robots(
     bodies: Records[Body], solver: Solver, contacts: Records[Contact], count: int, first: int
 ) -> int:
@@ -86,7 +86,7 @@ def _find_robots(
     return count
 
 
-@compiled_inline
+@compiled_merged
 def _find_ball(
     bodies: Records[Body], shapes: Shapes, contacts: Records[Contact], count: int, first: int
 ) -> int:
@@ -139,7 +139,7 @@ def _to_box(x: float, y: float, box: WallBox) -> tuple[float, float, float]:
     return 0.0, -1.0, most
 
 
-@compiled_lean
+@compiled_merged
 def _to_outline(x: float, y: float, edges: Records[Edge], part: HullPart) -> tuple[float, float, float]:
     """Return direction and distance for a convex outline, which may have only one corner."""
     first, last = int(part.first), int(part.last)

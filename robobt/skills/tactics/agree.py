@@ -21,10 +21,9 @@ from robobt.skills.tactics.assignment import assign
 from robobt.skills.tactics.attacker import NOBODY, AttackerCandidate, choose_attacker, may_be_attacked
 from robobt.skills.tactics.defence import mark_places, threats, wall_places
 from robobt.skills.tactics.support import short_place, support_places
-from robobt.world.compiled import compiled_lean
 from robobt.world.game import Restart
-from robobt.world.geometry import FloatArray, Point, distance
-from robobt.world.records import MEETING, MOVER, Mover, ball_of, movers_of
+from robobt.world.geometry import Point, distance
+from robobt.world.records import MEETING, MOVER, ball_of, movers_of
 from robobt.world.rules import has_ball, owner
 from robobt.world.state import Frame, RobotState
 
@@ -69,7 +68,9 @@ def _look(frame: Frame, plan: TeamPlan) -> None:
     plan.rolling = plan.watch.rolling_speed(frame)
     everybody = movers_of(frame)
     plan.own_movers, theirs = everybody[: len(frame.own)], everybody[len(frame.own) :].copy()
-    _limit(theirs, plan.tactics.quickest)
+    for limit in ("max_speed", "acceleration"):
+        limited = theirs.view(MOVER)[limit]
+        np.minimum(limited, plan.tactics.quickest, out=limited)
     plan.their_movers = theirs
     slide, roll = frame.ball_model.slide_deceleration, frame.ball_model.roll_deceleration
     plan.meetings = meetings(
@@ -79,16 +80,6 @@ def _look(frame: Frame, plan: TeamPlan) -> None:
     ours, rest = times[: len(frame.own)], times[len(frame.own) :]
     plan.own_times = {robot.id: time for robot, time in zip(frame.own, ours, strict=True)}
     plan.their_times = {robot.id: time for robot, time in zip(frame.opponents, rest, strict=True)}
-
-
-@compiled_lean
-def _limit(movers_: FloatArray, most: float) -> None:
-    """Limit the robots' speed and acceleration to ``most``."""
-    movers = movers_.view(MOVER)
-    for i in range(len(movers)):
-        mover: Mover = movers[i, 0]
-        mover.max_speed = min(mover.max_speed, most)
-        mover.acceleration = min(mover.acceleration, most)
 
 
 def _judge_possession(frame: Frame, team: TeamStore, plan: TeamPlan) -> None:

@@ -21,7 +21,7 @@ from robobt.skills.tactics.lanes import (
     kick_speed,
 )
 from robobt.skills.tactics_settings import TACTICS, AppliedTactics
-from robobt.world.compiled import compiled, record_dtype
+from robobt.world.compiled import compiled, compiled_merged, record_dtype
 from robobt.world.geometry import FloatArray, distance
 from robobt.world.records import mover_records
 from robobt.world.state import Frame, RobotState
@@ -214,7 +214,7 @@ def _rate(
     return rated
 
 
-@compiled
+@compiled_merged
 def _can_be_target(x: float, y: float, area_gap: float, tactics: AppliedTactics) -> bool:
     """Return whether (x, y) is well inside the field and outside the defence areas."""
     half_length, half_area = tactics.half_length, tactics.defense_width / 2.0

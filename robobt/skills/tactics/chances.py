@@ -21,7 +21,7 @@ from robobt.skills.tactics.lanes import (
     time_to_pass,
 )
 from robobt.skills.tactics_settings import TACTICS, AppliedTactics
-from robobt.world.compiled import compiled, records
+from robobt.world.compiled import compilable, compiled, compiled_merged, records
 from robobt.world.geometry import FloatArray, Point
 from robobt.world.records import FIELD_PLACE, MOVER_SIZE, Mover, Place, mover_records
 from robobt.world.state import TOUCH_DISTANCE
@@ -67,7 +67,7 @@ def shot_chance(
     return AimedShot(chance, at_y, 0.5 * wide * gx / (to_goal * to_goal))
 
 
-@compiled
+@compiled_merged
 def _between(
     x: float, y: float, delay: float, opponents: Sequence[Mover], tactics: AppliedTactics
 ) -> Sequence[Place]:
@@ -94,7 +94,7 @@ def _between(
     return where
 
 
-@compiled
+@compiled_merged
 def _room(
     x: float,
     y: float,
@@ -135,7 +135,7 @@ def _room(
     return least
 
 
-@compiled
+@compiled_merged
 def _longest_run(chances: FloatArray, enough: float) -> tuple[int, int]:
     """Return the first and last aim of the longest run of aims with a chance of at least ``enough``."""
     low, high, longest = 0, 0, 0
@@ -149,7 +149,7 @@ def _longest_run(chances: FloatArray, enough: float) -> tuple[int, int]:
     return low, high
 
 
-@compiled
+@compilable
 def redirect_angle(ox: float, oy: float, x: float, y: float, goal_x: float) -> float:
     """Return the angle at (x, y) between the directions to the origin (ox, oy) and to the goal [rad]."""
     turn = atan2(oy - y, ox - x) - atan2(-y, goal_x - x)
@@ -183,7 +183,7 @@ def aim_of(
     return heading
 
 
-@compiled
+@compilable
 def redirect_kick(sideways: float, shot_speed: float, fastest: float) -> float:
     """Return the kick speed of a shot with one touch, given the speed across the heading it keeps [m/s]."""
     return min(shot_speed, sqrt(max(1.0, fastest * fastest - sideways * sideways)))
@@ -246,7 +246,8 @@ def rate_points(
         speed = kick_speed(length, tactics.receive_speed, tactics)
         time = flight_time(length, speed, tactics)
         arrives = arrive_chance(ox, oy, x, y, speed, delay, opponents, nobody, -1, tactics)
-        out[g] = arrives, point_worth(ox, oy, x, y, delay + time, opponents, tactics)
+        out[g, 0] = arrives
+        out[g, 1] = point_worth(ox, oy, x, y, delay + time, opponents, tactics)
     return out
 
 

@@ -8,7 +8,7 @@ from math import exp, hypot, inf, sqrt
 from robobt.skills.tactics_settings import AppliedTactics
 from robobt.world import ball_model
 from robobt.world.ball_model import time_for
-from robobt.world.compiled import compiled
+from robobt.world.compiled import compiled, compiled_merged
 from robobt.world.records import Mover
 from robobt.world.state import TOUCH_DISTANCE
 
@@ -17,21 +17,21 @@ _CHIP_SAMPLES = 4
 _LANE_SAMPLES = 8
 
 
-@compiled
+@compiled_merged
 def kick_speed(length: float, arrival: float, tactics: AppliedTactics) -> float:
     """Return the kick speed that leaves a ball the speed ``arrival`` after ``length`` [m/s, m]."""
     speed = ball_model.kick_speed(length, arrival, tactics.slide, tactics.roll, tactics.share)
     return min(tactics.fastest_pass, max(tactics.slowest_pass, speed))
 
 
-@compiled
+@compiled_merged
 def flight_time(length: float, speed: float, tactics: AppliedTactics) -> float:
     """Return when a ball kicked at ``speed`` has covered ``length`` [s]; 10 if it comes to rest before."""
     time = time_for(length, speed, tactics.share * speed, tactics.slide, tactics.roll)
     return time if time < inf else 10.0
 
 
-@compiled
+@compiled_merged
 def time_to_pass(robot: Mover, x: float, y: float, tactics: AppliedTactics) -> float:
     """Return when a robot can touch a ball at (x, y), passing at any speed [s]."""
     px = robot.x + tactics.reaction * robot.vx
@@ -47,7 +47,7 @@ def time_to_pass(robot: Mover, x: float, y: float, tactics: AppliedTactics) -> f
     return float(max(needed, gap / robot.max_speed) + tactics.reaction)
 
 
-@compiled
+@compiled_merged
 def cannot_pass_by(robot: Mover, x: float, y: float, time: float, tactics: AppliedTactics) -> bool:
     """Return whether :func:`time_to_pass` is certainly above ``time`` [s], without computing roots."""
     free = max(0.0, time - tactics.reaction)
@@ -95,7 +95,7 @@ def lane_margin(
     return least
 
 
-@compiled
+@compiled_merged
 def sigmoid(x: float) -> float:
     """Return the logistic function."""
     if x < -30.0:
@@ -134,13 +134,13 @@ def arrive_chance(
     return chance
 
 
-@compiled
+@compiled_merged
 def chip_speed(length: float, tactics: AppliedTactics) -> float:
     """Return the speed of a chip that rolls after ``length`` [m/s, m]."""
     return float(tactics.chip_speed * sqrt(length))
 
 
-@compiled
+@compiled_merged
 def chip_time(length: float, tactics: AppliedTactics) -> float:
     """Return the duration of a chip that rolls after a length [s]."""
     return float(tactics.chip_rolls * sqrt(length))
@@ -190,7 +190,7 @@ def chip_chance(
     return chance
 
 
-@compiled
+@compiled_merged
 def _in_chips_way(dx: float, dy: float, ux: float, uy: float, gap: float, tactics: AppliedTactics) -> bool:
     """Return whether a robot at (dx, dy) from the kick stands where a chip along (ux, uy) is still low."""
     along = dx * ux + dy * uy
