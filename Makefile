@@ -1,5 +1,5 @@
 # `make match` plays the showcase and writes its replay; `make test` runs the tests.
-# Both create .venv on first use.
+# Both create .venv on first use, and compile what they need for this machine.
 
 # The first interpreter of a supported version; override with `make PYTHON=...`.
 PYTHON ?= $(shell for p in python3 python3.13 python3.12 python3.11; do \
@@ -62,6 +62,7 @@ $(INSTALLED): pyproject.toml constraints.txt hatch_build.py $(wildcard robobt/le
 	@echo "Setting up .venv; the first time takes a few minutes."
 	$(PYTHON) -m venv .venv
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[dev]'
+	$(BIN)/python -m robobt.cli.compile_ahead --training
 	@touch $@
 
 # What playing and watching need, and no more; an environment with everything has that too.
@@ -69,7 +70,8 @@ $(PLAYING): pyproject.toml constraints.txt hatch_build.py $(wildcard robobt/leag
 	@test -n "$(PYTHON)" || { echo "robobt needs Python 3.11, 3.12 or 3.13: install one, or name it with make PYTHON=..."; exit 1; }
 	@test -e .venv || $(PYTHON) -m venv .venv
 	@test -e $(INSTALLED) || { echo "Setting up .venv; the first time takes a minute or two."; \
-		$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[record]'; }
+		$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[record]' \
+		&& $(BIN)/python -m robobt.cli.compile_ahead; }
 	@touch $@
 
 clean:

@@ -18,6 +18,7 @@ COMMANDS = {
     "policy": "policy:policy",
     "env": "env:env",
     "match": "match:match",
+    "first_run": "first_run:first_run_command",
     "live": "live:live",
     "shots": "shots:shots",
     "sprt": "sprt:sprt",

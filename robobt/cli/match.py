@@ -21,6 +21,7 @@ from robobt.cli.common import (
     say,
     world_of,
 )
+from robobt.cli.compile_ahead import compile_before_first_match
 from robobt.cli.match_summary import TREES_FAILED, print_summary, tell_failures
 from robobt.cli.option_groups.layers import layer_names
 from robobt.cli.option_groups.match import KeptTrials, MatchVenue, Trees, Trials
@@ -116,6 +117,7 @@ def _play_on(
         there = f"takes a name that ends in {RECORDING} here, not '{kept.record}'"
         raise typer.BadParameter(there, param_hint="--record")
     make_folders({"--record": kept.record})
+    compile_before_first_match()
     start = loaded.seed if run.seed is None else run.seed
     records = [kept.record]
 
@@ -151,6 +153,7 @@ def _play_trials(
         need("tournament", "google.protobuf", "pyarrow", "scipy")
         check_ending("--identify", kept.identify, ".yaml", ".yml")
     make_folders({"--record": file, "--out": kept.out, "--identify": kept.identify})
+    compile_before_first_match()
     with tempfile.TemporaryDirectory() as folder:
         as_page = file is not None and file.name.lower().endswith(PAGES)
         aside = as_page or (file is None and kept.identify is not None)

@@ -9,6 +9,7 @@ import sys
 from collections.abc import Callable
 from contextlib import suppress
 from typing import Any, TypeVar, cast
+from weakref import WeakSet
 
 from numba.core.event import Event, TimingListener, register
 from numba.core.registry import CPUDispatcher
@@ -30,10 +31,18 @@ _REPORTED_COMPILE_TIME = 2.0
 Function = TypeVar("Function", bound=Callable[..., object])
 
 
-class _CalledByPython(CPUDispatcher):
+CALLED_BY_PYTHON: WeakSet[CalledByPython] = WeakSet()
+"""All compiled functions that there are."""
+
+
+class CalledByPython(CPUDispatcher):
     """A function that Python calls; compiled code that calls it is given another, without Python's way in.
 
     That way, which takes Python's objects apart and checks them, is a fifth of the work of compiling.
+
+    Args:
+        function: the function.
+        options: numba's.
     """
 
     def __init__(self, function: Callable[..., object], options: dict[str, Any]) -> None:
@@ -44,13 +53,16 @@ class _CalledByPython(CPUDispatcher):
             # A read-only installation, run by a user without a home folder, compiles each time.
             with suppress(RuntimeError):
                 made._cache = DeepCache(function, made.targetoptions)
+        CALLED_BY_PYTHON.add(self)
 
     def get_call_template(self, args: Any, kws: Any) -> Any:
+        """See numba: of these types, what compiled code calls."""
         # One version serves a constant and any other argument of that type.
         args, kws = tuple(map(unliteral, args)), {name: unliteral(kind) for name, kind in kws.items()}  # type: ignore[no-untyped-call]
         return self._for(args).get_call_template(args, kws)
 
     def get_overload(self, sig: Any) -> Any:
+        """See numba: of these types, the place of what compiled code calls."""
         return self._for(normalize_signature(sig)[0]).get_overload(sig)  # type: ignore[no-untyped-call]
 
     def _for(self, args: Any) -> Any:
@@ -65,7 +77,7 @@ def compile_function(function: Function, **options: Any) -> Function:
         function: the function.
         options: numba's.
     """
-    made: Any = _CalledByPython(function, {"nopython": True, "no_cfunc_wrapper": True, **options})
+    made: Any = CalledByPython(function, {"nopython": True, "no_cfunc_wrapper": True, **options})
     return cast(Function, made)
 
 

@@ -111,7 +111,7 @@ def passes(
         me.heading,
         own,
         opponents,
-        _Allowed(
+        (
             least,
             chips,
             tactics.shortest if plan.short is None else tactics.shortest_restart,
@@ -151,13 +151,16 @@ def _rate(
     heading: float,
     own_: FloatArray,
     opponents_: FloatArray,
-    allowed: _Allowed,
+    allowed_: tuple[float, bool, float, float, float],
     numbers: FloatArray,
 ) -> NDArray[np.record]:
-    """Rate passes to points (G, 2) of the robots ``owners``; return the best to each, :class:`_Rated`."""
+    """Rate passes to points (G, 2) of the robots ``owners``; return the best to each, :class:`_Rated`.
+
+    ``allowed_`` holds the values of :class:`_Allowed`.
+    """
     rated = np.zeros(len(points), dtype=_RATED)
     tactics: AppliedTactics = numbers.view(TACTICS)[0]
-    own, opponents = mover_records(own_), mover_records(opponents_)
+    own, opponents, allowed = mover_records(own_), mover_records(opponents_), _Allowed(*allowed_)
     for g in range(len(points)):
         x, y = points[g]
         length = hypot(x - ox, y - oy)
