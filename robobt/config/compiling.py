@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+COMPILING_TOLD = "ROBOBT_COMPILING_TOLD"
+"""Set in the environment, which workers inherit, once the user knows that a run waits for the compiler."""
+
 _compiling = True
 
 

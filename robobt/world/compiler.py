@@ -17,13 +17,11 @@ from numba.core.sigutils import normalize_signature
 from numba.core.types import unliteral
 from numba.extending import register_jitable
 
+from robobt.config.compiling import COMPILING_TOLD
 from robobt.world import compiled_views as compiled_views
 from robobt.world.compiled_key import COMPILING, DeepCache
 
 _log = logging.getLogger(__name__)
-
-_COMPILING_VARIABLE = "ROBOBT_COMPILING_TOLD"
-"""Set in the environment, which workers inherit."""
 
 _REPORTED_COMPILE_TIME = 2.0
 """Compilation time after which a message is printed [s]."""
@@ -42,12 +40,15 @@ class CalledByPython(CPUDispatcher):
 
     Args:
         function: the function.
+        variables: types of its variables; numba asks for them where it makes one that was pickled.
         options: numba's.
     """
 
-    def __init__(self, function: Callable[..., object], options: dict[str, Any]) -> None:
-        super().__init__(function, targetoptions=options)
-        self._part: Any = CPUDispatcher(function, targetoptions={**options, "no_cpython_wrapper": True})
+    def __init__(
+        self, function: Callable[..., object], variables: dict[str, Any] | None, options: dict[str, Any]
+    ) -> None:
+        super().__init__(function, variables, options)
+        self._part: Any = CPUDispatcher(function, variables, {**options, "no_cpython_wrapper": True})
         made: Any
         for made in (self, self._part):
             # A read-only installation, run by a user without a home folder, compiles each time.
@@ -77,7 +78,7 @@ def compile_function(function: Function, **options: Any) -> Function:
         function: the function.
         options: numba's.
     """
-    made: Any = CalledByPython(function, {"nopython": True, "no_cfunc_wrapper": True, **options})
+    made: Any = CalledByPython(function, None, {"nopython": True, "no_cfunc_wrapper": True, **options})
     return cast(Function, made)
 
 
@@ -103,7 +104,7 @@ class CompilingTold(TimingListener):
         # The first worker prints for all, unless the process that started it has done so.
         name = multiprocessing.current_process().name
         worker = multiprocessing.parent_process() is not None
-        self._told = worker and (_COMPILING_VARIABLE in os.environ or not name.endswith("-1"))
+        self._told = worker and (COMPILING_TOLD in os.environ or not name.endswith("-1"))
 
     def on_start(self, event: Event) -> None:
         """Note that a function is being compiled, and how long those before it took."""
@@ -111,7 +112,7 @@ class CompilingTold(TimingListener):
         if self._told or not self.done or self.duration < self._patience or not sys.stderr.isatty():
             return
         self._told = True
-        os.environ[_COMPILING_VARIABLE] = "1"
+        os.environ[COMPILING_TOLD] = "1"
         _log.warning(
             "compiling for this machine, as on the first run after an installation or an update: "
             "a minute or more, once; later runs load what was compiled"

@@ -12,6 +12,7 @@ from numba.core.sigutils import normalize_signature
 
 from robobt.cli import compile_ahead as module
 from robobt.cli.compile_ahead import LINES, TRAINING, _groups, compile_ahead, compile_before_first_match
+from robobt.config.compiling import COMPILING_TOLD
 from robobt.config.errors import RobobtError
 from robobt.world import compiled_ahead
 from robobt.world.compiler import CalledByPython
@@ -59,6 +60,9 @@ def test_the_functions_of_a_folder_go_to_one_process() -> None:
 @pytest.fixture
 def listed(monkeypatch: pytest.MonkeyPatch, tmp_path):  # type: ignore[no-untyped-def]
     """Return a function that replaces the list by other lines."""
+
+    # Set now, it is put back as it was.
+    monkeypatch.setenv(COMPILING_TOLD, "")
 
     def listed(text: str) -> None:
         (tmp_path / "lines.txt").write_text(text)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import pickle
 import sys
 from collections.abc import Iterator
 from math import inf
@@ -174,6 +175,16 @@ def test_python_can_call_what_is_compiled_for_compiled_code_only() -> None:
     assert _scaled(3.0, True) == 6.0
     assert _lifted(3.0) == 2.5
     assert _halved(3.0) == 1.5
+
+
+def test_a_compiled_function_can_be_sent_to_another_process() -> None:
+    made: Any = _scaled
+    states = made._reduce_states()
+    # As another process has not met it before.
+    again = type(made)._rebuild(**{**states, "uuid": "of another process"})
+    assert again is not made
+    assert again(3.0, True) == 6.0
+    assert pickle.loads(pickle.dumps(made)) is made
 
 
 class _Pair:
