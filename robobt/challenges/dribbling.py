@@ -9,7 +9,7 @@ import numpy as np
 
 from robobt.challenges.challenge import CHALLENGES, Challenge, ChallengeAttempt, Figures
 from robobt.match.scenario.scenario import scenario_from
-from robobt.plays.challenges.gate_run import GATE_POSTS, GATES
+from robobt.skills.challenges.carry_along import GATE_POSTS, GATES
 from robobt.world.game import GameState
 from robobt.world.geometry import Point, distance
 from robobt.world.rules import ball_out, keeps_ball

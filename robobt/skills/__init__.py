@@ -43,6 +43,13 @@ from robobt.skills.base import SKILLS as SKILLS
 from robobt.skills.base import Condition as Condition
 from robobt.skills.base import Skill as Skill
 from robobt.skills.base import skill as skill
+from robobt.skills.challenges.aim_at_spot import AimAtSpot as AimAtSpot
+from robobt.skills.challenges.carry_along import CarryAlong as CarryAlong
+from robobt.skills.challenges.drive_straight import DriveStraight as DriveStraight
+from robobt.skills.challenges.has_passed import HasPassed as HasPassed
+from robobt.skills.challenges.is_number import IsNumber as IsNumber
+from robobt.skills.challenges.mate_has_kicked import MateHasKicked as MateHasKicked
+from robobt.skills.challenges.to_and_fro import ToAndFro as ToAndFro
 from robobt.skills.conditions.ball_aimed_at_goal import BallAimedAtGoal as BallAimedAtGoal
 from robobt.skills.conditions.ball_at_defense_edge import BallAtDefenseEdge as BallAtDefenseEdge
 from robobt.skills.conditions.ball_coming import BallComing as BallComing
@@ -74,6 +81,7 @@ from robobt.skills.defence.shot_coming import ShotComing as ShotComing
 from robobt.skills.defence.stay_out import StayOut as StayOut
 from robobt.skills.defence.wall import Wall as Wall
 from robobt.skills.go_to_pose import GoToPose as GoToPose
+from robobt.skills.keep_clear import KeepClear as KeepClear
 from robobt.skills.restarts.go_to_kickoff_position import GoToKickoffPosition as GoToKickoffPosition
 from robobt.skills.restarts.go_to_penalty_position import GoToPenaltyPosition as GoToPenaltyPosition
 from robobt.skills.restarts.keep_distance import KeepDistance as KeepDistance
@@ -87,7 +95,9 @@ from robobt.skills.store import Shot as Shot
 from robobt.skills.store import Store as Store
 from robobt.skills.store import TeamStore as TeamStore
 from robobt.skills.tactics.choose_kick import ChooseKick as ChooseKick
+from robobt.skills.tactics.choose_safe_pass import ChooseSafePass as ChooseSafePass
 from robobt.skills.tactics.receive_pass import ReceivePass as ReceivePass
+from robobt.skills.tactics.show_for_pass import ShowForPass as ShowForPass
 from robobt.skills.tactics.take_place import TakePlace as TakePlace
 from robobt.skills.tactics.task_switch import TaskSwitch as TaskSwitch
 from robobt.skills.team.best_field_position import BestFieldPosition as BestFieldPosition

@@ -7,7 +7,7 @@ import pytest
 
 from robobt.challenges.dribbling import GateDribbling, GateJudge
 from robobt.challenges.run import ChallengeEntry, play_run
-from robobt.plays.challenges.gate_run import GATE_POSTS, GATES
+from robobt.skills.challenges.carry_along import GATE_POSTS, GATES
 from robobt.world.field import DIVISION_B
 from robobt.world.game import OPEN_PLAY
 from robobt.world.state import BallState, Frame, RobotState

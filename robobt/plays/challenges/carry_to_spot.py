@@ -6,33 +6,11 @@ from robobt.plays.base import PLAYS, first_of, when
 from robobt.skills.ball.dribble_to import DribbleTo
 from robobt.skills.ball.go_to_ball import GoToBall
 from robobt.skills.ball.pick_up_ball import PickUpBall
-from robobt.skills.base import Condition, skill
+from robobt.skills.challenges.aim_at_spot import AimAtSpot
 from robobt.skills.conditions.has_ball import HasBall
 from robobt.skills.conditions.is_closest_to_ball import IsClosestToBall
 from robobt.skills.stop import Stop
-from robobt.tree import Behaviour, Status
-from robobt.world.geometry import distance
-
-
-@skill
-class AimAtSpot(Condition):
-    """Write the referee's spot for the ball to ``target``; FAILURE without one, and once the ball is there.
-
-    Args:
-        tolerance: distance of the ball from the spot that counts as there [m].
-    """
-
-    writes = ("target",)
-
-    tolerance: float = 0.1
-
-    def on_running(self) -> Status:
-        """Look where the ball is to be placed."""
-        spot = self.frame.game.placement
-        if spot is None or distance(self.ball.position, spot) < self.tolerance:
-            return self.fail("no spot to aim at")
-        self.store.target = spot
-        return self.succeed()
+from robobt.tree import Behaviour
 
 
 @PLAYS.register("carry_to_spot")

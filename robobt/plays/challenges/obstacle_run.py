@@ -2,88 +2,20 @@
 
 from __future__ import annotations
 
-from dataclasses import field
-
-from robobt.motion.pilot import command, drive
 from robobt.plays.base import PLAYS
 from robobt.plays.baselines.go_round import GoRound
-from robobt.skills.base import Skill, skill
+from robobt.skills.challenges.drive_straight import DriveStraight
+from robobt.skills.challenges.to_and_fro import ToAndFro
 from robobt.skills.go_to_pose import GoToPose
 from robobt.skills.keep_clear import KeepClear
-from robobt.tree import Behaviour, Status
-from robobt.world.geometry import Point, distance
+from robobt.tree import Behaviour
+from robobt.world.geometry import Point
 
 OBSTACLE_TARGET = (4.35, 1.35)
 """Target of the challenge as blue sees it [m]; the rules play it at the other end: (-4350, -1350) mm."""
 
 VIRTUAL_LINE = (2, 3)
 """Numbers of the two obstacle robots between which there is a line. Source: the challenge's rules of 2025."""
-
-_TURNS_WITHIN = 0.03
-"""Distance from an end at which an obstacle turns back [m]."""
-
-_PATROL_ACCELERATION = 1.0
-"""Acceleration of a moving obstacle, gentle so that it keeps a ball [m/s^2]."""
-
-
-@skill
-class ToAndFro(Skill):
-    """Drive to and fro between where it started and another point, whatever is in the way; never ends.
-
-    Args:
-        to: the other point [m]; None stands still.
-        speed: top speed [m/s].
-        dribbler: whether the dribbler turns, to carry a ball along.
-    """
-
-    to: Point | None = None
-    speed: float = 1.0
-    dribbler: bool = False
-    _home: tuple[Point, float] | None = field(default=None, init=False)
-    _back: bool = field(default=False, init=False)
-
-    def on_running(self) -> Status:
-        """Drive one tick."""
-        me = self.me
-        if self._home is None:
-            self._home = me.position, me.heading
-        home, heading = self._home
-        target = home if self.to is None or self._back else self.to
-        if self.to is not None and distance(me.position, target) < _TURNS_WITHIN:
-            self._back = not self._back
-            target = home if self._back else self.to
-        limits = me.limits.model_copy(
-            update={
-                "max_speed": self.speed,
-                "acceleration": _PATROL_ACCELERATION,
-                "side_acceleration": _PATROL_ACCELERATION,
-                "braking": _PATROL_ACCELERATION,
-                "side_braking": _PATROL_ACCELERATION,
-            }
-        )
-        self.store.command = drive(me, target, heading, limits, self.frame.period)
-        self.store.command.dribbler = self.dribbler
-        return self.run("to and fro")
-
-
-@skill
-class DriveStraight(Skill):
-    """Drive straight at a point at full speed, whatever is in the way.
-
-    Args:
-        target: the point [m].
-    """
-
-    target: Point = OBSTACLE_TARGET
-
-    def on_running(self) -> Status:
-        """Drive one tick."""
-        me, limits = self.me, self.me.limits
-        gap = max(distance(me.position, self.target), 1e-6)
-        share = limits.max_speed / gap
-        vx, vy = share * (self.target[0] - me.x), share * (self.target[1] - me.y)
-        self.store.command = command(me, vx, vy, 0.0, limits, self.frame.period)
-        return self.run("straight on")
 
 
 @PLAYS.register("obstacle_run")

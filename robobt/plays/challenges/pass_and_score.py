@@ -2,53 +2,19 @@
 
 from __future__ import annotations
 
-from dataclasses import field
-
 from robobt.plays.base import PLAYS, first_of, when
 from robobt.skills.ball.go_to_ball import GoToBall
 from robobt.skills.ball.intercept import Intercept
 from robobt.skills.ball.kick_to_target import KickToTarget
 from robobt.skills.ball.pick_up_ball import PickUpBall
-from robobt.skills.base import Condition, skill
+from robobt.skills.challenges.has_passed import HasPassed
+from robobt.skills.challenges.is_number import IsNumber
+from robobt.skills.challenges.mate_has_kicked import MateHasKicked
 from robobt.skills.conditions.ball_is_moving import BallIsMoving
 from robobt.skills.conditions.has_ball import HasBall
 from robobt.skills.stop import Stop
-from robobt.tree import Behaviour, Inverter, Status
-from robobt.world.geometry import Point, distance
-
-_KICKED_AWAY = 0.3
-"""A ball this far from the mate that touched it last has left it [m]."""
-
-
-@skill
-class IsNumber(Condition):
-    """Succeeds for the robot with this number.
-
-    Args:
-        number: the robot's number.
-    """
-
-    number: int = 0
-
-    def on_running(self) -> Status:
-        """Compare the number."""
-        return self.succeed() if self.me.id == self.number else self.fail(f"it is number {self.me.id}")
-
-
-@skill
-class MateHasKicked(Condition):
-    """Succeeds from the moment that a mate has kicked the ball away."""
-
-    _kicked: bool = field(default=False, init=False)
-
-    def on_running(self) -> Status:
-        """Look for a ball that has left the mate that touched it last."""
-        last = self.frame.last_touch
-        if last is not None and last.team is self.frame.team and last.number != self.me.id:
-            mate = self.frame.robot(last.number)
-            if mate is not None and distance(mate.position, self.ball.position) > _KICKED_AWAY:
-                self._kicked = True
-        return self.succeed() if self._kicked else self.fail("no mate has kicked yet")
+from robobt.tree import Behaviour, Inverter
+from robobt.world.geometry import Point
 
 
 @PLAYS.register("pass_and_score")
@@ -73,7 +39,7 @@ def pass_and_score(
             IsNumber(number=0),
             first_of(
                 "pass",
-                when("passed", MajorHasPassed(), Stop()),
+                when("passed", HasPassed(), Stop()),
                 KickToTarget(target=pass_to, kick_speed=pass_speed),
             ),
         ),
@@ -82,17 +48,3 @@ def pass_and_score(
         when("meet", BallIsMoving(), Intercept()),
         when("get the ball", GoToBall(), PickUpBall()),
     )
-
-
-@skill
-class MajorHasPassed(Condition):
-    """Succeeds once this robot has kicked the ball away."""
-
-    _passed: bool = field(default=False, init=False)
-
-    def on_running(self) -> Status:
-        """Look for a ball that has left this robot."""
-        last = self.frame.last_touch
-        if last is not None and last == (self.frame.team, self.me.id):
-            self._passed |= distance(self.me.position, self.ball.position) > _KICKED_AWAY
-        return self.succeed() if self._passed else self.fail("not yet")

@@ -1,0 +1,1 @@
+"""Skills for the league's technical challenges."""

@@ -1,0 +1,66 @@
+from __future__ import annotations
+
+import pytest
+
+from robobt.skills.tactics.agree import agree
+from robobt.skills.tactics.choose_safe_pass import ChooseSafePass
+from robobt.skills.tactics.keeping import SHORTEST
+from robobt.testing import frame, held, robot
+from robobt.tree import Status
+from robobt.world import RobotState
+from tests.skills.fixed_world import Alone
+
+ME = robot(-2.0, 0.0, number=1, contact=True)
+
+
+class Keeper:
+    """Robot 1 with the ball; its team-mates take part in the plan."""
+
+    def __init__(self, skill: ChooseSafePass, *mates: RobotState) -> None:
+        self.alone, self.mates = Alone(skill), mates
+        self.alone.store.team.plan.players.update((1, *(mate.id for mate in mates)))
+
+    def at(self, time: float, *theirs: RobotState) -> Status:
+        view = frame(ME, held(ME), self.mates, theirs, time)
+        agree(view, self.alone.store.team)
+        return self.alone.tick(view, 1)
+
+
+def test_it_passes_to_the_mate_that_nobody_marks() -> None:
+    marked, free = robot(-0.5, 0.0, number=2), robot(-2.0, 1.6, number=3)
+    keeper = Keeper(ChooseSafePass(enough=0.2), marked, free)
+    assert keeper.at(0.0, robot(-0.8, 0.1, number=5)) is Status.SUCCESS
+    store = keeper.alone.store
+    assert store.pass_ is not None
+    assert (store.pass_.receiver, store.shot) == (3, None)
+    assert store.team.plan.next_pass == store.pass_
+
+
+def test_a_mate_that_is_too_near_gets_no_pass() -> None:
+    near = robot(held(ME)[0] + SHORTEST - 0.3, 0.0, number=2)
+    keeper = Keeper(ChooseSafePass(), near)
+    keeper.at(0.0)
+    chosen = keeper.alone.store.pass_
+    assert chosen is None or abs(chosen.target[0] - held(ME)[0]) >= SHORTEST - 1e-9
+
+
+def test_a_poor_pass_is_played_only_after_a_while() -> None:
+    mate, opponent = robot(0.0, 0.0, number=2), robot(-0.1, 1.0, number=5)
+    keeper = Keeper(ChooseSafePass(enough=1.0, least=0.01, patience=1.0), mate)
+    assert keeper.at(0.0, opponent) is Status.FAILURE
+    assert [keeper.at(0.2 * step, opponent) for step in range(1, 6)][-1] is Status.SUCCESS
+
+
+def test_an_opponent_close_by_ends_the_waiting() -> None:
+    mate, opponent = robot(0.0, 0.0, number=2), robot(-0.1, 1.0, number=5)
+    keeper = Keeper(ChooseSafePass(enough=1.0, least=0.01), mate)
+    assert keeper.at(0.0, opponent, robot(-2.3, 0.2, number=6)) is Status.SUCCESS
+
+
+def test_without_a_mate_there_is_no_pass() -> None:
+    assert Keeper(ChooseSafePass()).at(0.0) is Status.FAILURE
+
+
+def test_patience_is_positive() -> None:
+    with pytest.raises(ValueError, match="patience must be positive"):
+        ChooseSafePass(patience=0.0)
