@@ -104,7 +104,7 @@ class Branches:
         self._length, self._warm_up = max(1, round(seconds / period)), round(warm_up / period)
         self._match = MatchLoop(self.scenario, 0, sim_world, referee=lambda _scenario, _field: None)
         self._robots = [robot.id for robot in recording.header.robots]
-        self._players: dict[RobotId, Player] = {player.robot: player for player in self._match.players}
+        self._players: dict[RobotId, Player] = {}
         self._followers = {robot: LogFollower(recording, robot) for robot in self._robots}
         self._watch = LogWatch(logged, leave)
         self._field: FieldGeometry = recording.header.field
@@ -133,6 +133,8 @@ class Branches:
             self._referee.watch(frame)
             self._figures.update(frame, frame.game)
             self._match.decide(recording.observation(before))
+        # Only now: if the log names another goalkeeper, two players have exchanged their robots.
+        self._players = {player.robot: player for player in self._match.players}
         self._placement, self._holder = logged_start(self.logged.recording, tick)
         self._restored = self._match.checkpoint(self._referee, self._figures)
 
