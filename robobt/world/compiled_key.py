@@ -27,7 +27,7 @@ from robobt.world.compiled_lock import CompilingTurn
 COMPILING = "numba:compile"
 """Numba's name for the event that a function is compiled."""
 
-_MOST_KEPT = 16
+_MOST_VERSIONS = 16
 """Number of versions of a function that are kept: for other types, or from before a change."""
 
 _GENERATED = sha256(Path(compiled_views.__file__).read_bytes()).hexdigest()
@@ -77,7 +77,7 @@ class _Index(IndexDataCacheFile):
         # The code before the index that names it.
         self._save_data(name, data)  # type: ignore[no-untyped-call]
         removed = [kept.pop(key)] if key in kept else []
-        removed += [kept.pop(next(iter(kept))) for _ in range(len(kept) + 1 - _MOST_KEPT)]
+        removed += [kept.pop(next(iter(kept))) for _ in range(len(kept) + 1 - _MOST_VERSIONS)]
         self._save_index({**kept, key: name})  # type: ignore[no-untyped-call]
         for old in removed:
             with suppress(OSError):
