@@ -143,13 +143,13 @@ def _refill(one: set[Any] | deque[Any], held: list[Any]) -> None:
 
 
 def _refill_dict(one: dict[Any, Any], held: dict[Any, Any]) -> None:
-    # By identity: values such as arrays do not compare to one truth.
-    if len(one) != len(held) or any(one.get(key, _ABSENT_KEY) is not value for key, value in held.items()):
+    # By identity: values such as arrays do not compare to one truth. The order counts, as loops follow it.
+    if len(one) != len(held) or any(
+        key is not kept or value is not there
+        for (key, value), (kept, there) in zip(one.items(), held.items(), strict=True)
+    ):
         one.clear()
         one.update(held)
-
-
-_ABSENT_KEY = object()
 
 
 def _set_all(one: object, values: dict[str, object]) -> None:

@@ -104,3 +104,11 @@ def test_the_trees_of_a_match_decide_the_same_again() -> None:
         first = [match.decide(frame) for frame in frames]
         kept.restore()
         assert [match.decide(frame) for frame in frames] == first
+
+
+def test_a_dictionary_gets_its_order_back() -> None:
+    one = {"a": True, "b": True}
+    checkpoint = Checkpoint(one)
+    one["a"] = one.pop("a")
+    checkpoint.restore()
+    assert list(one) == ["a", "b"]
