@@ -10,10 +10,12 @@ import hashlib
 import json
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field
+from os import SEEK_END
 from pathlib import Path
 from statistics import fmean
+from typing import Annotated
 
-from pydantic import ConfigDict, TypeAdapter, ValidationError
+from pydantic import ConfigDict, Field, TypeAdapter, ValidationError
 
 from robobt import __version__
 from robobt.challenges.challenge import CHALLENGES, Figures
@@ -45,7 +47,7 @@ class Row:
         seed: seed of the runs.
         scores: the score of each run.
         score: their mean.
-        low, high: 95 % interval of the mean (Student); None with fewer than two different runs.
+        low, high: 95 % interval of the mean (Student); None where all scores are equal.
         unit: what the score counts.
         figures: means of all that was counted, by name, each over the runs that have it.
         trace: hash over the true states of all runs; equal for equal runs.
@@ -59,8 +61,8 @@ class Row:
     challenge: str
     entrant: str
     blue: str
-    seed: int
-    scores: list[float]
+    seed: Annotated[int, Field(ge=0, lt=2**63)]
+    scores: Annotated[list[float], Field(min_length=1)]
     score: float
     low: float | None
     high: float | None
@@ -95,8 +97,8 @@ def row_of(entry: ChallengeEntry, entrant: str, seed: int, results: Sequence[Run
     scores = [result.score for result in results]
     low: float | None = None
     high: float | None = None
-    # Runs that repeat one another say nothing about the spread.
-    if len({result.trace for result in results}) > 1:
+    # Equal scores say nothing about the spread.
+    if len(set(scores)) > 1:
         low, high = mean_interval(scores)
     yellow, yellow_params = entry.yellow or (None, {})
     return Row(
@@ -137,19 +139,28 @@ def append_row(path: Path, row: Row) -> None:
     Raises:
         OSError: it cannot be written.
     """
-    with path.open("a", encoding="utf-8") as file:
-        file.write(json.dumps(asdict(row), allow_nan=False) + "\n")
+    with path.open("ab+") as file:
+        if file.tell():
+            file.seek(-1, SEEK_END)
+            # A line that was cut off stays one line.
+            if file.read(1) != b"\n":
+                file.write(b"\n")
+        file.write(json.dumps(asdict(row), allow_nan=False).encode() + b"\n")
 
 
 def read_rows(path: Path) -> list[Row]:
     """Return the rows of a file of results.
 
     Raises:
-        TableError: a line is not a row.
+        TableError: a line is not a row, or the file is not text.
         OSError: it cannot be read.
     """
     adapter, rows = TypeAdapter(Row), []
-    for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1):
+    try:
+        text = path.read_text(encoding="utf-8")
+    except UnicodeDecodeError as error:
+        raise TableError(f"{path}: is not a file of results: it holds no UTF-8 text") from error
+    for number, line in enumerate(text.splitlines(), 1):
         if not line.strip():
             continue
         try:

@@ -31,6 +31,7 @@ from robobt.cli.common import (
 from robobt.cli.option_groups.scenario import Set, parse_play
 from robobt.cli.options import option
 from robobt.cli.outputs import make_folders
+from robobt.config.errors import RobobtError, unknown_name
 from robobt.config.wording import counted
 
 if TYPE_CHECKING:
@@ -118,8 +119,8 @@ def challenge(
     whether the hash over all true states is equal.
 
     Keys of --json: rows, a list; each has challenge, entrant, blue, params, yellow, yellow_params, settings,
-    seed, scores (of each trial), score (their mean), low and high (95 % interval, null without two different
-    trials), unit, figures (means of all that was counted), trace (hash over all true states), robobt
+    seed, scores (of each trial), score (their mean), low and high (95 % interval, null where all scores are
+    equal), unit, figures (means of all that was counted), trace (hash over all true states), robobt
     (version), commit and source (of the rules); recordings: for each entrant best and worst, lists of files;
     repeated: with --check, for each row whether the hash is equal.
 
@@ -186,7 +187,8 @@ def _keep(folder: Path, row: Row, entry: ChallengeEntry, played: list[RunResult]
 
 
 def _show(path: Path | None, check: bool, workers: int, *, as_json: bool) -> None:
-    from robobt.challenges.table import read_rows, repeats
+    from robobt.challenges import CHALLENGES
+    from robobt.challenges.table import TableError, read_rows, repeats
     from robobt.worlds import sim_world
 
     if path is None:
@@ -196,8 +198,16 @@ def _show(path: Path | None, check: bool, workers: int, *, as_json: bool) -> Non
     if check:
         with Progress(TABLE, len(rows)) as progress:
             repeated = []
-            for row in rows:
-                repeated.append(repeats(row, sim_world, workers))
+            for number, row in enumerate(rows, 1):
+                if row.challenge not in CHALLENGES:
+                    raise TableError(
+                        f"{path}, row {number}: challenge: no challenge is called {row.challenge!r}; "
+                        f"{unknown_name(row.challenge, CHALLENGES)}"
+                    )
+                try:
+                    repeated.append(repeats(row, sim_world, workers))
+                except RobobtError as error:
+                    raise TableError(f"{path}, row {number}: {error}") from error
                 progress.advance()
     if as_json:
         print_json({"rows": [asdict(row) for row in rows], "recordings": {}, "repeated": repeated})

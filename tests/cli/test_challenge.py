@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 from typer.testing import CliRunner
 
+from robobt.challenges.run import ChallengeEntry, RunResult
+from robobt.challenges.table import append_row, row_of
 from robobt.cli import app
 
 QUICK = ("--trials", "2", "--workers", "1", "--set", "ends.time_limit=0.3")
@@ -54,6 +57,26 @@ def test_what_does_not_fit_is_refused() -> None:
     assert "needs a file of results" in run("challenge", "table", code=2)
     assert "is for 'robobt challenge table'" in run("challenge", "passing", "--check", code=2)
     assert "no play is called 'nobody'" in run("challenge", "passing", "--blue", "nobody", code=1)
+
+
+@pytest.mark.parametrize(
+    ("field", "value", "problem"),
+    [
+        ("challenge", "passin", "challenge: no challenge is called 'passin'"),
+        ("blue", "nobody", "no play is called 'nobody'"),
+        ("settings", {"speed": 1}, "speed: there is no such field"),
+    ],
+)
+def test_a_row_that_cannot_be_played_again_is_named(
+    tmp_path: Path, field: str, value: object, problem: str
+) -> None:
+    entry = ChallengeEntry("passing", ("stand_still", {}))
+    row = row_of(entry, "ours", 1, [RunResult(0, 1, {"passes": 1.0}, "a")])
+    file = tmp_path / "results.jsonl"
+    append_row(file, replace(row, **{field: value}))  # type: ignore[arg-type]
+    shown = run("challenge", "table", file, "--check", "--workers", "1", code=1)
+    assert "results.jsonl, row 1: " in shown
+    assert problem in shown
 
 
 def test_challenges_are_listed_with_their_rules() -> None:
