@@ -6,6 +6,7 @@ import json
 import tempfile
 from collections.abc import Callable, Collection
 from dataclasses import dataclass
+from errno import EEXIST
 from pathlib import Path
 
 from robobt import __version__
@@ -18,7 +19,7 @@ from robobt.tournament.job import code_digest
 from robobt.tournament.plan import Plan
 from robobt.tournament.play import play_tournament
 from robobt.tournament.played import PlayedMatch
-from robobt.tournament.recordings import Keep, Recordings
+from robobt.tournament.recordings import Keep, Recordings, file_name
 from robobt.tournament.store import MatchStore, StoreError
 from robobt.worlds import sim_world
 
@@ -75,6 +76,10 @@ def plan_of(store: MatchStore, world: WorldFactory = sim_world) -> Plan:
         raise StoreError(store.path, "a file that the scenario names has changed since", "scenario")
     entrants = []
     for name, digest in store.entrants().items():
+        if f"entrant {name}" not in held:
+            raise StoreError(
+                store.path, "is not held, so an earlier version of robobt entered it", f"entrants: {name}"
+            )
         entrant = Entrant.from_json(held[f"entrant {name}"])
         if entrant.program is not None:
             raise StoreError(store.path, "is a program, which does not repeat itself", f"entrants: {name}")
@@ -99,7 +104,7 @@ def regenerate(
     Args:
         store: the store.
         matches: those of its matches to play again; forfeits are left out.
-        folder: where the recordings are written, one file a match.
+        folder: where the recordings are written, one file a match; no file of these matches is there yet.
         workers: number of processes; 0 is this process itself.
         on_match: called with each match and its recording as soon as it has been played.
         world: makes the world of a match.
@@ -109,12 +114,16 @@ def regenerate(
 
     Raises:
         StoreError: the matches cannot be played again; see :func:`plan_of`.
-        OSError: a recording cannot be written.
+        OSError: a recording cannot be written, or would replace a file.
         KeyboardInterrupt: it was stopped.
     """
     plan = plan_of(store, world)
     wanted = {match.fixture: match for match in matches if match.trace}
     recordings = Recordings(folder, Keep.ALL, plan.names[0])
+    for fixture in wanted:
+        # They may be the recordings of the match as it was played, and this one may go another way.
+        for there in folder.glob(f"{file_name(fixture)}.*"):
+            raise FileExistsError(EEXIST, "is there already; give another folder", str(there))
 
     def take(again: PlayedMatch) -> None:
         if on_match is not None:

@@ -19,6 +19,7 @@ from robobt.tournament.fixtures import Fixture
 from robobt.tournament.plan import Plan
 from robobt.tournament.play import play_tournament
 from robobt.tournament.played import PlayedMatch
+from robobt.tournament.recordings import file_name
 from robobt.tournament.regenerate import differences, plan_of, regenerate
 from robobt.tournament.store import MatchStore, StoreError
 from robobt.world import RobotId, Team
@@ -90,6 +91,17 @@ def test_only_the_matches_asked_for_are_played(path: Path, tmp_path: Path) -> No
     assert len(list((tmp_path / "again").iterdir())) == 1
 
 
+@pytest.mark.parametrize("ending", [".robobt.arrows", ".html", ".parquet"])
+def test_no_file_of_a_match_is_replaced(path: Path, tmp_path: Path, ending: str) -> None:
+    with MatchStore(path) as store:
+        one = store.matches()[0]
+        there = tmp_path / f"{file_name(one.fixture)}{ending}"
+        there.write_text("of the match as it was played")
+        with pytest.raises(FileExistsError, match="give another folder"):
+            regenerate(store, [one], tmp_path)
+    assert there.read_text() == "of the match as it was played"
+
+
 def test_a_match_that_goes_another_way_is_told(path: Path, tmp_path: Path) -> None:
     changed(path, "UPDATE matches SET trace = 'another' WHERE round = 0")
     with MatchStore(path) as store:
@@ -112,6 +124,13 @@ def test_a_store_without_its_scenario_is_refused(path: Path) -> None:
     with sqlite3.connect(path) as connection:
         connection.execute("DROP TABLE definitions")
     with MatchStore(path) as store, pytest.raises(StoreError, match="holds no scenario"):
+        plan_of(store)
+
+
+def test_a_store_without_an_entrant_is_refused(path: Path) -> None:
+    with sqlite3.connect(path) as connection:
+        connection.execute("DELETE FROM definitions WHERE name = 'entrant at 2'")
+    with MatchStore(path) as store, pytest.raises(StoreError, match="entrants: at 2: is not held"):
         plan_of(store)
 
 
