@@ -107,6 +107,8 @@ class PlacementJudge:
         if frame.time <= frame.period:
             # The referee puts the ball down after the first frame.
             self._start = ball.position
+        elif self._boundary and frame.field.contains(ball.x, ball.y):
+            points["off boundary"] = 1.0
         events = self._automatic.watch(frame, game)
         self._gap = distance(ball.position, self._spot)
         if any(robot.ball_contact for robot in frame.own):
@@ -115,8 +117,6 @@ class PlacementJudge:
             points["moved"] = 1.0
         if self._gap < _NEAR_GOAL and ball.speed < _BALL_RESTS:
             points["stopped near"] = 1.0
-        if self._boundary and frame.field.contains(ball.x, ball.y):
-            points["off boundary"] = 1.0
         if any(event.kind is EventKind.PLACEMENT_SUCCEEDED for event in events):
             points["placed"], self.time = 1.0, frame.time - STOP_BEFORE
         return self.time is not None

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 
 from robobt.challenges.ball_placement import PLACEMENTS, BallPlacement, PlacementJudge, PlacementReferee
 from robobt.challenges.run import ChallengeEntry, play_run
+from robobt.match.loop import MatchLoop
 from robobt.world.field import DIVISION_B
 from robobt.world.game import RefereeCommand, Restart
 from robobt.world.geometry import Point
@@ -35,6 +37,18 @@ def points(*balls: Ball, **given: bool) -> dict[str, float]:
 
 def test_an_untouched_ball_earns_nothing() -> None:
     assert points()["points"] == 0.0
+
+
+def test_a_ball_at_the_boundary_that_nobody_moves_earns_nothing() -> None:
+    attempt = BallPlacement().attempts(np.random.default_rng(1))[5]
+    attempt = ChallengeEntry("ball_placement", ("stand_still", {})).of(attempt)
+    judge = attempt.judge()
+    with MatchLoop(attempt.scenario, 1, sim_world, referee=attempt.referee) as match:
+        for _ in range(4):
+            truth = match.world.truth()
+            match.tick()
+            judge.see(truth, match.game)
+    assert judge.figures()["points"] == 0.0
 
 
 def test_the_dribbler_earns_a_point() -> None:
