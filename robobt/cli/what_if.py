@@ -120,6 +120,10 @@ def what_if(
         one_of([team], ["blue", "yellow"], "--team")
     if record is not None:
         check_ending("--record", record, RECORDING, PAGE)
+        if record.exists() and file.exists() and record.samefile(file):
+            raise typer.BadParameter("would replace the log", param_hint="--record")
+    if search.end is not None and search.end <= search.begin:
+        raise typer.BadParameter("--to has to be later than --from", param_hint="--from, --to")
     import_files(plays.imports)
     logged = load_logged(file, how.simulator)
     make_folders({"--record": record})
@@ -179,8 +183,10 @@ def _at(
         played = how.branches(logged, plays if changed else None)
         played.begin(tick)
         decision = next((one for one in decisions if best is not None and one.name == best.name), None)
+        # Trial 0 as in the figures.
+        follow = others if changed else follow
         played.play(
-            how.seed, 0, follow=others, decision=decision, record=played.recording(str(record), title)
+            how.seed, 0, follow=follow, decision=decision, record=played.recording(str(record), title)
         )
     if as_json:
         said = {"log": str(file), "team": ours.value, "seconds": how.seconds, "seed": how.seed, "at": at}
@@ -218,6 +224,10 @@ def _scan(
     from robobt.world.game import Team
 
     ours = _team(team, [], Team.BLUE)
+    times = logged.recording.times
+    if not len(times) or search.begin > times[-1]:
+        # Says what the log holds.
+        logged.tick(search.begin)
     make_folders({"--out": search.out}, folders=True)
     branches = how.branches(logged)
     with Progress("branches", 1) as progress:

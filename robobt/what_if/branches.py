@@ -250,10 +250,13 @@ class Branches:
 
     def _outcome(self, before: Mapping[str, TeamResult], truth: Frame, steps: int, followed: int) -> Branch:
         after, period = self._figures.result(), self.scenario.period
+        # A log may begin with a score, which nothing before the moment has shown then.
+        first = self.logged.game(self.tick)
+        scores = {Team.BLUE: first.blue_score, Team.YELLOW: first.yellow_score}
         goals, expected = {}, {}
         for team in Team:
             now, then = after[team.value], before[team.value]
-            goals[team] = now.goals - then.goals
+            goals[team] = now.goals - scores[team]
             expected[team] = now.expected_goals - then.expected_goals
             if goals[team] and now.shots_on_goal == then.shots_on_goal:
                 expected[team] += goals[team]

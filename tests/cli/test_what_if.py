@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
+from typing import Any
 
 import pytest
 from typer.testing import CliRunner, Result
 
 from robobt.cli import app
 from robobt.live.replay_html import is_replay
-from robobt.what_if import load_logged
+from robobt.what_if import Branch, Branches, load_logged
 from robobt.what_if.scan import moments_of
 from robobt.world import Team
 from tests.what_if.made import recorded
@@ -82,6 +83,8 @@ def test_a_match_is_searched_and_each_moment_has_a_replay(small: Path) -> None:
         (("--at", 1.0, "--out", "moments"), "goes with --scan"),
         (("--at", 1.0, "--team", "red"), "must be one of 'blue', 'yellow', not 'red'"),
         (("--at", 99.0), "holds from 0 to"),
+        (("--scan", "--from", 99.0), "holds from 0 to"),
+        (("--scan", "--from", 3.0, "--to", 2.0), "--to has to be later than --from"),
         (("--at", 1.0, "--blue", "nobody"), "no play is called 'nobody'"),
     ],
 )
@@ -91,3 +94,31 @@ def test_what_cannot_be_played_is_told_in_one_line(
     done = invoke(small, *options)
     assert done.exit_code in (1, 2)
     assert problem in " ".join(done.output.replace("│", " ").split())
+
+
+def test_the_log_is_not_replaced_by_a_branch(small: Path, time: float) -> None:
+    before = small.read_bytes()
+    done = invoke(small, "--at", time, "--trials", 2, "--seconds", 0.1, "--record", small)
+    assert (done.exit_code, small.read_bytes() == before) == (2, True)
+    assert "would replace the log" in done.output
+
+
+def test_a_branch_of_a_log_without_plays_is_recorded_as_it_was_measured(
+    small: Path, time: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    logged = load_logged(small)
+    logged.known = False
+    played: list[tuple[bool, list[Team]]] = []
+    play = Branches.play
+
+    def watched(self: Branches, *args: Any, **given: Any) -> Branch:
+        played.append((given.get("record") is not None, list(given["follow"])))
+        return play(self, *args, **given)
+
+    monkeypatch.setattr("robobt.what_if.load_logged", lambda *_: logged)
+    monkeypatch.setattr(Branches, "play", watched)
+    page = small.with_name("unknown.html")
+    done = invoke(small, "--at", time, "--trials", 2, "--seconds", 0.1, "--record", page)
+    assert done.exit_code == 0, done.output
+    assert {kept for kept, _ in played} == {False, True}
+    assert {tuple(follow) for _, follow in played} == {tuple(Team)}

@@ -108,6 +108,18 @@ def test_a_stopped_game_is_refused_and_when_it_goes_on_is_told(logged: LoggedMat
         stopped.tick(99.0)
 
 
+def test_goals_before_the_moment_do_not_count(logged: LoggedMatch) -> None:
+    scored = replace(logged.game(0), blue_score=3, yellow_score=1)
+    recording = replace(logged.recording, games=[(0, scored)])
+    branches = Branches(LoggedMatch(recording, logged.scenario, logged.known), seconds=0.1)
+    for tick in (0, 30):
+        branches.begin(tick)
+        for branch in (branches.play(0, 0), branches.really()):
+            assert branch.goals == {Team.BLUE: 0, Team.YELLOW: 0}
+            assert max(branch.expected.values()) < 1.0
+    branches.close()
+
+
 def test_other_plays_play_from_the_moment_on(logged: LoggedMatch, branches: Branches) -> None:
     tick = moment(logged)[0]
     still = logged.scenario
