@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from robobt.identify.estimate import Estimate, of_values, unseen, widened
+from robobt.identify.estimate import Estimate, not_negative, of_values, unseen, widened
 from robobt.identify.observations import Observations
 from robobt.identify.views import each_alone
 from robobt.identify.windows import windows
@@ -71,8 +71,8 @@ def identify_noise(seen: Observations) -> NoiseEstimate:
     whole = seen.cameras is None or float(np.mean(seen.cameras < 0)) > _MOSTLY
     missing = [_missing(seen.poses[:, robot, 0], seen.times) for robot in range(len(seen.robots))]
     return NoiseEstimate(
-        widened(of_values(np.array(places), 2, "m"), _JITTER),
-        widened(of_values(np.array(headings), 2, "rad"), _JITTER),
+        not_negative(widened(of_values(np.array(places), 2, "m"), _JITTER)),
+        not_negative(widened(of_values(np.array(headings), 2, "rad"), _JITTER)),
         _share(*_missing(seen.ball[:, 0], seen.times)) if whole else unseen(),
         _share(sum(lost for lost, _ in missing), sum(count for _, count in missing)) if whole else unseen(),
     )

@@ -23,6 +23,9 @@ _LIMITS = DRIVE_PARAMETERS[1:]
 _MOST_HOPS = {"first_hop": 1.0, "other_hops": 1.0, "rebound": 0.95}
 """Greatest values of a ball's hops in settings."""
 
+_SMALLEST = {"ball_noise": 2e-5, "robot_noise": 2e-5, "heading_noise": 1e-4, "vision_delay": 1e-4}
+"""What is smaller than this is 0 in the file [m, m, rad, s]: a recording's numbers are not finer."""
+
 _AT_LEAST = {"cross_ahead": -0.5, "cross_aside": -0.5}
 """Least values of limits, where that is not 0."""
 
@@ -72,6 +75,7 @@ def preset_of(identified: Identification, base: str = "default") -> dict[str, ob
         rest = max(0.0, identified.delay.value - by_wheels)
         realism |= {"vision_delay": _digits(rest), "command_delay": 0.0}
         limits |= {"dead_time": 0.0, "reaction": by_wheels}
+    realism |= {name: 0.0 for name, least in _SMALLEST.items() if realism.get(name, least) < least}
     settings: dict[str, object] = {"preset": base}
     kicks = identified.kicks
     kept, returned, carried = kicks.kept, kicks.returned, kicks.carried

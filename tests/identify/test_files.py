@@ -16,6 +16,7 @@ from typer.testing import CliRunner
 from robobt.cli import app
 from robobt.identify import Identification, Observations, identify, report, write_preset
 from robobt.identify.estimate import Estimate, unseen
+from robobt.identify.noise import identify_noise
 from robobt.identify.observations import without_repeats
 from robobt.identify.preset_file import preset_of
 from robobt.identify.report import parts_of
@@ -142,6 +143,28 @@ def test_what_was_not_seen_enough_goes_into_no_preset() -> None:
     nothing = found.noise._replace(robot_noise=unseen())
     object.__setattr__(found, "noise", nothing)
     assert settings_from(preset_of(found)).realism.robot_noise == 0.0
+
+
+def test_cameras_without_noise_show_the_truth_in_the_preset_too() -> None:
+    found = identify(driven(RobotLimits(), SimSettings(), seconds=10.0))
+    noise = found.noise._replace(
+        robot_noise=Estimate(4.7e-6, 4.2e-6, 5.2e-6, 12, True),
+        heading_noise=Estimate(2e-15, 7e-16, 3e-15, 12, True),
+    )
+    object.__setattr__(found, "noise", noise)
+    object.__setattr__(found, "delay", Estimate(2.4e-10, 0.0, 6e-4, 12, True, "s"))
+    assert settings_from(preset_of(found)).realism == RealismSettings()
+
+
+def test_noise_is_never_less_than_nothing() -> None:
+    seen = driven(RobotLimits(), SimSettings(), seconds=5.0)
+    poses = np.array(seen.poses)
+    # Two robots of which one alone is noisy leave a wide interval.
+    poses[:, 1] += np.random.default_rng(0).normal(0.0, 0.002, poses[:, 1].shape)
+    found = identify_noise(replace(seen, poses=poses))
+    assert found.robot_noise.value > 0.0
+    assert found.robot_noise.low == 0.0
+    assert found.heading_noise.low == 0.0
 
 
 def test_hops_and_what_a_kick_carries_on_are_played_with(tmp_path: Path) -> None:
