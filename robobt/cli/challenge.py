@@ -121,8 +121,8 @@ def challenge(
     Keys of --json: rows, a list; each has challenge, entrant, blue, params, yellow, yellow_params, settings,
     seed, scores (of each trial), score (their mean), low and high (95 % interval, null where all scores are
     equal), unit, figures (means of all that was counted), trace (hash over all true states), robobt
-    (version), commit and source (of the rules); recordings: for each entrant best and worst, lists of files;
-    repeated: with --check, for each row whether the hash is equal.
+    (version), commit and source (of the rules); recordings: for each entrant best and worst, lists of
+    files, a single trial being the best; repeated: with --check, for each row whether the hash is equal.
 
     Exit code 1 when --check finds a row that is not equal.
     """
@@ -179,10 +179,13 @@ def _keep(folder: Path, row: Row, entry: ChallengeEntry, played: list[RunResult]
     append_row(folder / RESULTS, row)
     best, worst = max(played, key=lambda one: one.score), min(played, key=lambda one: one.score)
     safe = re.sub(r"[^\w.-]+", "_", f"{row.challenge}-{row.entrant}")
-    recordings = {}
-    for which, result in {"best": best, "worst": worst}.items():
-        again = play_run(entry, result.run, row.seed, sim_world, folder / f"{safe}-{which}")
-        recordings[which] = list(again.recordings)
+    recordings: dict[str, list[str]] = {}
+    kept = {"best": best, "worst": worst} if len(played) > 1 else {"best": best}
+    with Progress(f"record {entry.challenge}, {row.entrant}", len(kept)) as progress:
+        for which, result in kept.items():
+            again = play_run(entry, result.run, row.seed, sim_world, folder / f"{safe}-{which}")
+            recordings[which] = list(again.recordings)
+            progress.advance()
     return recordings
 
 

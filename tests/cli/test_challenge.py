@@ -44,6 +44,15 @@ def test_rows_are_kept_and_repeat_bit_for_bit(tmp_path: Path) -> None:
     assert "equal" in shown
 
 
+@pytest.mark.integration
+def test_a_single_trial_is_recorded_once(tmp_path: Path) -> None:
+    given = ("--trials", "1", "--set", "ends.time_limit=0.3", "--out", tmp_path / "one", "--json")
+    recordings = json.loads(run("challenge", "passing", *given))["recordings"]["ours"]
+    assert list(recordings) == ["best"]
+    assert [Path(file).exists() for file in recordings["best"]] == [True]
+    assert not list((tmp_path / "one").glob("*worst*"))
+
+
 def test_realism_and_a_changed_delay_go_together() -> None:
     given = ("--realism", "realistic", "--set", "simulator.realism.command_delay=0.065", "--trials", "1")
     said = json.loads(run("challenge", "passing", *given, "--set", "ends.time_limit=0.1", "--json"))
