@@ -175,7 +175,7 @@ def _at(
             found.append(compared(name, with_them, unchanged, ours))
             progress.advance(trials)
     really = branches.really()
-    kept = None
+    kept, best = None, None
     if record is not None:
         kept = record
         best = max(found[1:], key=lambda one: one.gain.mean if one.gain else 0.0, default=None)
@@ -200,6 +200,13 @@ def _at(
             }
         )
         return
+    if decisions:
+        say(f"{holder} has the ball and decides otherwise.")
+    elif not changed:
+        say(
+            f"No field player of {ours.value} has the ball at {at:g} s, so no other decision is tried; "
+            "--blue or --yellow lets a team play otherwise."
+        )
     say(
         f"{file} at {at:g} s: {ours.value}'s goals in the next {how.seconds:g} s, minus the opponents', "
         f"{trials} branches each"
@@ -207,7 +214,7 @@ def _at(
     print_decisions(found)
     say(f"In the log: {really.value(ours):+.2f} expected goals, {really.lead(ours):+d} goals")
     if kept is not None:
-        say(f"Replay of a branch, with the log drawn beside it: {kept}")
+        say(f"Replay of '{best.name if best else found[0].name}', with the log drawn beside it: {kept}")
 
 
 def _scan(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 from typing import Any
 
@@ -59,6 +60,17 @@ def test_another_play_is_compared_with_what_played(small: Path, time: float) -> 
     shown = invoke(*options)
     assert "blue's goals in the next 0.5 s" in shown.output
     assert "stand_still" in shown.output
+
+
+def test_who_decides_is_told_and_whose_branch_is_recorded(small: Path, time: float) -> None:
+    options = (small, "--at", time, "--trials", 2, "--seconds", 0.3)
+    page = small.with_name("one.html")
+    shown = " ".join(invoke(*options, "--record", page).output.split())
+    assert re.search(r"blue \d has the ball and decides otherwise", shown)
+    assert re.search(r"Replay of '(shoot|pass to \d|carry|clear)', with the log", shown)
+    other = " ".join(invoke(*options, "--team", "yellow").output.split())
+    assert "No field player of yellow has the ball" in other
+    assert "shoot" not in other
 
 
 def test_a_match_is_searched_and_each_moment_has_a_replay(small: Path) -> None:
