@@ -95,7 +95,15 @@ def without_offsets(seen: Observations, cameras: CameraEstimate) -> Observations
     poses[:, :, :2] -= shifts[:, None]
     moved = replace(views, ball=views.ball - shifts, poses=poses)
     pictures = together(moved)
-    return replace(seen, ball=pictures.ball, poses=pictures.poses, views=moved)
+    # A part of a recording may begin or end between two cameras' views of one picture.
+    return replace(
+        seen,
+        times=pictures.times,
+        ball=pictures.ball,
+        poses=pictures.poses,
+        cameras=None if seen.cameras is None else pictures.cameras,
+        views=moved,
+    )
 
 
 def each_alone(seen: Observations) -> Iterator[Observations]:

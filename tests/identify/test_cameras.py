@@ -8,9 +8,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from robobt.identify.cameras import CameraEstimate, identify_cameras
-from robobt.identify.observations import CameraViews
+from robobt.identify.cameras import CameraEstimate, CameraOffset, identify_cameras
+from robobt.identify.estimate import Estimate, unseen
+from robobt.identify.observations import CameraViews, Observations
 from robobt.identify.sources import load_observations
+from robobt.identify.views import together, without_offsets
 from robobt.sim import SimSettings, SimWorld
 from robobt.sim.realism import RealismSettings
 from robobt.sim.sight import camera_places, offset_of
@@ -74,3 +76,27 @@ def test_cameras_that_take_turns_are_compared_by_what_moves_on_between() -> None
     assert found.offsets[0].x.value == pytest.approx(0.012, abs=0.0005)
     assert found.offsets[1].x.low < -0.012 < found.offsets[1].x.high
     assert found.offsets[0].y.value == pytest.approx(0.0, abs=0.0005)
+
+
+def test_a_part_that_ends_between_two_views_of_a_picture_stays_whole() -> None:
+    times = (np.arange(120)[:, None] / 60 + [0.0, 0.001]).ravel()
+    cameras = np.tile([0, 1], 120)
+    poses = np.zeros((len(times), 1, 3))
+    poses[:, 0, 0] = np.sin(times)
+    views = CameraViews(times, cameras, poses[:, 0, :2], poses, {})
+    seen = together(views)
+    whole = Observations(
+        DIVISION_B,
+        (ROBOT,),
+        seen.times,
+        seen.ball,
+        seen.poses,
+        np.zeros(0),
+        np.zeros((0, 1, 6)),
+        cameras=seen.cameras,
+        views=views,
+    )
+    known = CameraOffset(Estimate(0.01, 0.0, 0.02, 9, True), Estimate(0.0, -0.01, 0.01, 9, True))
+    part = without_offsets(whole.between(0.0, 1.0), CameraEstimate({0: known}, unseen()))
+    assert part.cameras is not None
+    assert len(part.times) == len(part.ball) == len(part.poses) == len(part.cameras)
