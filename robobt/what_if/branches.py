@@ -29,7 +29,7 @@ from robobt.world.answer import compensated
 from robobt.world.command import RobotCommand
 from robobt.world.field import FieldGeometry
 from robobt.world.game import STARTED, Team
-from robobt.world.rules import owner
+from robobt.world.rules import ball_out, owner
 from robobt.world.state import Frame, RobotId
 from robobt.worlds import sim_world
 
@@ -207,7 +207,11 @@ class Branches:
                 if over:
                     break
                 world.act(compensated(errors.execute(commands), frame))
-        return self._outcome(before, truth, step, followed)
+        # A log may begin with a score, which nothing before the moment has shown then.
+        scores = {Team.BLUE: first.blue_score, Team.YELLOW: first.yellow_score}
+        result = self._figures.result()
+        goals = {team: result[team.value].goals - scores[team] for team in Team}
+        return self._outcome(before, truth, step, followed, goals)
 
     def really(self) -> Branch:
         """Return what really followed the present moment in the log, as if it were a branch.
@@ -219,12 +223,16 @@ class Branches:
         recording, before = self.logged.recording, self._figures.result()
         last = min(self._length, len(recording) - 1 - self.tick)
         frame, step = recording.frame(self.tick), 0
+        goals = dict.fromkeys(Team, 0)
         for step in range(last + 1):
             frame = recording.frame(self.tick + step)
             self._figures.update(frame, frame.game)
-            if frame.game.command not in STARTED:
+            stopped = frame.game.command not in STARTED
+            if step == last or stopped or ball_out(self._field, frame.ball.position):
+                goals = self.logged.goals(self.tick, self.tick + step)
+            if stopped or any(goals.values()):
                 break
-        return self._outcome(before, frame, step, step)
+        return self._outcome(before, frame, step, step, goals)
 
     def recording(self, path: str, title: str) -> BranchRecording:
         """Return a recording of a branch, with the log drawn beside it.
@@ -248,19 +256,22 @@ class Branches:
         rows = self.logged.recording.truth.robots[tick]
         return [robot for robot, row in zip(self._robots, rows, strict=True) if not np.isfinite(row[0])]
 
-    def _outcome(self, before: Mapping[str, TeamResult], truth: Frame, steps: int, followed: int) -> Branch:
+    def _outcome(
+        self,
+        before: Mapping[str, TeamResult],
+        truth: Frame,
+        steps: int,
+        followed: int,
+        goals: Mapping[Team, int],
+    ) -> Branch:
         after, period = self._figures.result(), self.scenario.period
-        # A log may begin with a score, which nothing before the moment has shown then.
-        first = self.logged.game(self.tick)
-        scores = {Team.BLUE: first.blue_score, Team.YELLOW: first.yellow_score}
-        goals, expected = {}, {}
+        expected = {}
         for team in Team:
             now, then = after[team.value], before[team.value]
-            goals[team] = now.goals - scores[team]
             expected[team] = now.expected_goals - then.expected_goals
             if goals[team] and now.shots_on_goal == then.shots_on_goal:
                 expected[team] += goals[team]
-        stopped = truth.game.command not in STARTED
+        stopped = truth.game.command not in STARTED or any(goals.values())
         return Branch(
             goals=goals,
             expected=expected,

@@ -5,6 +5,7 @@ from __future__ import annotations
 import tempfile
 from copy import deepcopy
 from dataclasses import dataclass
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -15,8 +16,8 @@ from robobt.league.log.files import is_log
 from robobt.league.log.world import record_log
 from robobt.match.recording import Recording, load_recording
 from robobt.match.scenario.scenario import Scenario, scenario_from
-from robobt.world.game import OPEN_PLAY, GameState, Team
-from robobt.world.rules import own_side
+from robobt.world.game import OPEN_PLAY, STARTED, GameState, Team
+from robobt.world.rules import own_side, scorer
 
 _CLOCK_SLACK = 1e-6
 """Rounding of times [s]."""
@@ -60,6 +61,33 @@ class LoggedMatch:
                 break
             latest = game
         return latest
+
+    def goals(self, first: int, last: int) -> dict[Team, int]:
+        """Return the goals of each team from one tick to another.
+
+        The referee's score counts, also where it changes only after play was stopped, as in the league.
+        Without a referee the ball's way counts, up to the first goal.
+
+        Args:
+            first: the tick from which goals count.
+            last: the last tick; play is not stopped between the two.
+        """
+        games = self.recording.games
+        goals = dict.fromkeys(Team, 0)
+        if all(game.command is OPEN_PLAY.command for _, game in games):
+            field = self.recording.header.field
+            balls = [self.recording.frame(tick).ball for tick in range(first, last + 1)]
+            scorers = [scorer(field, before, after) for before, after in pairwise(balls)]
+            if (team := next(filter(None, scorers), None)) is not None:
+                goals[team] = 1
+            return goals
+        then, now = self.game(first), self.game(last)
+        if now.command not in STARTED:
+            later = [game for since, game in games if since > last]
+            now = next((game for game in later if game.command in STARTED), later[-1] if later else now)
+        goals[Team.BLUE] = max(0, now.blue_score - then.blue_score)
+        goals[Team.YELLOW] = max(0, now.yellow_score - then.yellow_score)
+        return goals
 
     def check_moment(self, tick: int) -> None:
         """Check that the match can be played on from a tick.

@@ -15,7 +15,7 @@ from robobt.what_if.errors import NO_ERRORS
 from robobt.what_if.pictured import ORIGINAL
 from robobt.what_if.scan import moments_of
 from robobt.world import RobotId, Team
-from robobt.world.game import GameState, RefereeCommand
+from robobt.world.game import OPEN_PLAY, GameState, RefereeCommand
 
 pytestmark = pytest.mark.integration
 
@@ -118,6 +118,36 @@ def test_goals_before_the_moment_do_not_count(logged: LoggedMatch) -> None:
             assert branch.goals == {Team.BLUE: 0, Team.YELLOW: 0}
             assert max(branch.expected.values()) < 1.0
     branches.close()
+
+
+def test_a_goal_in_a_log_without_a_referee_counts(logged: LoggedMatch) -> None:
+    ball = np.array(logged.recording.truth.ball)
+    ball[30:] = [5.0, 0.0, 0.0, 0.0, 0.0, 0.0]
+    ball[29, :2] = 4.45, 0.0
+    truth = replace(logged.recording.truth, ball=ball)
+    recording = replace(logged.recording, truth=truth, games=[(0, OPEN_PLAY)])
+    branches = Branches(LoggedMatch(recording, logged.scenario, logged.known), seconds=1.0)
+    branches.begin(20)
+    really = branches.really()
+    branches.close()
+    assert really.goals == {Team.BLUE: 1, Team.YELLOW: 0}
+    assert really.expected[Team.BLUE] >= 1.0
+    assert really.stands == 0.0
+    assert really.lasted == pytest.approx(10 / 60)
+
+
+def test_a_goal_that_the_referee_gives_after_the_stop_counts(logged: LoggedMatch) -> None:
+    running = logged.game(0)
+    stop = GameState(RefereeCommand.STOP)
+    given = replace(stop, yellow_score=1)
+    games = [(0, running), (60, stop), (90, given), (120, replace(running, yellow_score=1))]
+    match = LoggedMatch(replace(logged.recording, games=games), logged.scenario, logged.known)
+    branches = Branches(match, seconds=2.0)
+    branches.begin(20)
+    really = branches.really()
+    branches.close()
+    assert really.goals == {Team.BLUE: 0, Team.YELLOW: 1}
+    assert really.lasted == pytest.approx(40 / 60)
 
 
 def test_other_plays_play_from_the_moment_on(logged: LoggedMatch, branches: Branches) -> None:
