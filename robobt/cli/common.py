@@ -1,4 +1,4 @@
-"""One-line errors, options, tables and progress bars that the commands share.
+"""One-line errors, options and tables that the commands share.
 
 Nothing heavy may be imported at the top of any module of this package:
 ``robobt --help`` loads them all. A command imports what it needs itself.
@@ -22,6 +22,7 @@ import typer
 from rich.markup import escape
 
 from robobt.cli.options import option
+from robobt.cli.progress import Progress as Progress
 from robobt.cli.screen import FittedTable
 from robobt.cli.screen import console as console
 from robobt.cli.screen import errors as errors
@@ -258,40 +259,6 @@ def name_lines(name: str, beside: int) -> str:
             lines.append("")
         lines[-1] += word
     return escape("\n".join(map(str.rstrip, lines)))
-
-
-class Progress:
-    """A progress bar on stderr for ``total`` steps; nothing where stderr is no terminal."""
-
-    def __init__(self, name: str, total: int) -> None:
-        from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeRemainingColumn
-        from rich.progress import Progress as Bars
-
-        self._bars = Bars(
-            TextColumn("{task.description}"),
-            BarColumn(),
-            MofNCompleteColumn(),
-            TimeRemainingColumn(),
-            console=errors,
-            transient=True,
-            disable=not errors.is_terminal,
-        )
-        self._bar = self._bars.add_task(escape(name), total=total)
-
-    def __enter__(self) -> Progress:
-        self._bars.start()
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self._bars.stop()
-
-    def name(self, text: str) -> None:
-        """Change what stands before the bar."""
-        self._bars.update(self._bar, description=escape(text))
-
-    def advance(self, steps: int = 1) -> None:
-        """Count more steps as done."""
-        self._bars.advance(self._bar, steps)
 
 
 def one_of(given: Iterable[str], known: Iterable[str], option: str) -> None:

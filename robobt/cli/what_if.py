@@ -82,7 +82,9 @@ def what_if(
     trials: Annotated[
         int, option("--trials", ": branches of each decision, with --scan of each moment listed", min=2)
     ] = 100,
-    team: Annotated[str | None, option("--team", "; by default the team that decides otherwise")] = None,
+    team: Annotated[
+        str | None, option("--team", "; by default the one that decides otherwise, with --scan blue")
+    ] = None,
     record: Annotated[
         Path | None, option("--record", ": the best decision's branch, with the log drawn beside it")
     ] = None,
@@ -248,7 +250,7 @@ def _scan(
             seed=how.seed,
             begin=search.begin,
             end=search.end,
-            on_branch=lambda done, planned: progress.name(f"branch {done} of {planned}"),
+            on_branch=progress.reach,
         )
     replays = [_replay(branches, logged, one, ours, how.seed, search.out) for one in found]
     if as_json:
