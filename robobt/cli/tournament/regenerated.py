@@ -82,7 +82,7 @@ def regenerate_matches(
     else:
         _print(again)
         count = counted(len(again), "match", "matches")
-        say(f"{equal} of {count} went the same way, bit for bit; in {folder}")
+        say(f"{equal} of {count} went the same way, bit for bit. Files: {folder}")
     if equal < len(again):
         raise typer.Exit(1)
 
