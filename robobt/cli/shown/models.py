@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable
+from itertools import groupby
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -133,7 +135,7 @@ def _print_whole(file: ModelFile) -> None:
         "skill": f"{card.skill} ({card.kind.replace('_', ' ')})",
         "algorithm": card.algorithm,
         "observation": f"{card.observation.name} version {card.observation.version}: "
-        + ", ".join(card.observation.features),
+        + in_short(card.observation.features),
         "outputs": ", ".join([f"{one.name} ({_figure(one.scale, one.unit)})" for one in card.outputs]),
         "period": "" if card.period is None else f"{card.period:g} s",
         "limits": _assignments({} if card.limits is None else card.limits.model_dump(exclude_none=True)),
@@ -146,6 +148,31 @@ def _print_whole(file: ModelFile) -> None:
         if text:
             say(f"  {title:12} {text}")
     print_held_out(file)
+
+
+def in_short(features: Iterable[str]) -> str:
+    """Return the entries of an observation as text, with those that every numbered robot has told once."""
+    texts: list[str] = []
+    for kind, group in groupby(features, _kind):
+        names = list(group)
+        found = [match for name in names if (match := _NUMBERED.fullmatch(name))]
+        numbers = list(dict.fromkeys([match[2] for match in found]))
+        entries = list(dict.fromkeys([match[3] for match in found]))
+        whole = [f"{kind}_{number}_{entry}" for number in numbers for entry in entries]
+        if len(numbers) > 1 and names == whole:
+            texts.append(f"{kind}_{numbers[0]} to {kind}_{numbers[-1]} ({', '.join(entries)} of each)")
+        else:
+            texts += names
+    return ", ".join(texts)
+
+
+_NUMBERED = re.compile(r"(.+?)_(\d+)_(.+)")
+"""An entry of a numbered robot, such as ``mate_0_vx [m/s]``."""
+
+
+def _kind(name: str) -> str:
+    match = _NUMBERED.fullmatch(name)
+    return "" if match is None else match[1]
 
 
 def print_held_out(file: ModelFile) -> None:
