@@ -118,6 +118,8 @@ def what_if(
         raise typer.BadParameter("goes with --at", param_hint="--blue, --yellow, --record")
     if not search.scan and search.out is not None:
         raise typer.BadParameter("goes with --scan; --record is for --at", param_hint="--out")
+    if not search.scan and (search.begin or search.end is not None):
+        raise typer.BadParameter("goes with --scan", param_hint="--from, --to")
     if team is not None:
         one_of([team], ["blue", "yellow"], "--team")
     if record is not None:

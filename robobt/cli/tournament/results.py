@@ -33,7 +33,9 @@ def results(
     regenerate: Annotated[
         Path | None, option("--regenerate", "; --entrant, --outcome and --lost-by choose among them")
     ] = None,
-    tracking: Annotated[Tracking, option("--tracking", ", for --regenerate")] = Tracking.ARROWS,
+    tracking: Annotated[
+        Tracking | None, option("--tracking", ", for --regenerate; by default arrows")
+    ] = None,
     workers: Annotated[
         int | None,
         option("--workers", ", for --regenerate; 0 plays in the command's own process", min=0, max=256),
@@ -51,6 +53,8 @@ def results(
     match blue, yellow, round, seed, trace, again (its trace now), equal, problem and file. Exit code 1 if a
     hash differs.
     """
+    if tracking is not None and regenerate is None:
+        raise typer.BadParameter("goes with --regenerate", param_hint="--tracking")
     from robobt.tournament.standings import paired, standings_of
     from robobt.tournament.store import MatchStore
 
@@ -70,7 +74,8 @@ def results(
     said: dict[str, object] = {"played": played, "merged": merged}
     if regenerate is not None:
         with MatchStore(store) as held:
-            regenerate_matches(held, found, regenerate, tracking, workers, said, as_json=as_json)
+            written = tracking or Tracking.ARROWS
+            regenerate_matches(held, found, regenerate, written, workers, said, as_json=as_json)
         return
     if merge and not as_json:
         say(f"Matches taken over: {merged}")

@@ -88,6 +88,7 @@ def test_stores_of_several_machines_are_merged(store: Path, tmp_path: Path) -> N
         (("--entrant", "nobody"), "no entrant is called 'nobody'; there are at 1, at 2, at 3"),
         (("--compare", A, "nobody"), "no entrant is called 'nobody'"),
         (("--compare", A, A), "needs two different entrants"),
+        (("--tracking", "parquet"), "goes with --regenerate"),
         (("--merge", "gone.sqlite"), "gone.sqlite: there is no such file"),
     ],
 )
