@@ -175,13 +175,14 @@ def _at(
             name = ", ".join([text for text in (plays.blue, plays.yellow) if text])
             other = how.branches(logged, plays)
             other.begin(tick)
-            with_them = [other.play(how.seed, trial, follow=others) for trial in range(trials)]
+            with_them = []
+            for trial in range(trials):
+                with_them.append(other.play(how.seed, trial, follow=others))
+                progress.advance()
             found.append(compared(name, with_them, unchanged, ours))
-            progress.advance(trials)
     really = branches.really()
-    kept, best = None, None
+    best = None
     if record is not None:
-        kept = record
         best = max(found[1:], key=lambda one: one.gain.mean if one.gain else 0.0, default=None)
         title = f"{logged.scenario.name} at {at:g} s: {best.name if best else found[0].name}"
         played = how.branches(logged, plays if changed else None)
@@ -200,7 +201,7 @@ def _at(
                 **said,
                 "really": followed,
                 "decisions": [one.to_json() for one in found],
-                "record": kept and str(kept),
+                "record": record and str(record),
             }
         )
         return
@@ -217,8 +218,8 @@ def _at(
     )
     print_decisions(found)
     say(f"In the log: {really.value(ours):+.2f} expected goals, {really.lead(ours):+d} goals")
-    if kept is not None:
-        say(f"Replay of '{best.name if best else found[0].name}', with the log drawn beside it: {kept}")
+    if record is not None:
+        say(f"Replay of '{best.name if best else found[0].name}', with the log drawn beside it: {record}")
 
 
 def _scan(
