@@ -217,7 +217,7 @@ def _at(
         f"{trials} branches each"
     )
     print_decisions(found)
-    say(f"In the log: {really.value(ours):+.2f} expected goals, {really.lead(ours):+d} goals")
+    say(f"In the log: {really.value(ours):+z.2f} expected goals, {really.lead(ours):+d} goals")
     if record is not None:
         say(f"Replay of '{best.name if best else found[0].name}', with the log drawn beside it: {record}")
 

@@ -26,7 +26,7 @@ def print_moments(found: Sequence[Found]) -> None:
             f"{one.time:.2f}",
             str(one.decision.robot),
             one.decision.name,
-            f"{one.unchanged.expected.mean:+.2f}",
+            f"{one.unchanged.expected.mean:+z.2f}",
             _text(one.changed.gain),
             _text(one.changed.goals_gain),
         )
@@ -50,4 +50,4 @@ def print_decisions(found: Sequence[DecisionFigures]) -> None:
 
 
 def _text(estimate: MeanEstimate) -> str:
-    return f"{estimate.mean:+.2f} ({estimate.low:+.2f} to {estimate.high:+.2f})"
+    return f"{estimate.mean:+z.2f} ({estimate.low:+z.2f} to {estimate.high:+z.2f})"
