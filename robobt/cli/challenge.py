@@ -178,7 +178,8 @@ def _keep(folder: Path, row: Row, entry: ChallengeEntry, played: list[RunResult]
 
     append_row(folder / RESULTS, row)
     best, worst = max(played, key=lambda one: one.score), min(played, key=lambda one: one.score)
-    safe = re.sub(r"[^\w.-]+", "_", f"{row.challenge}-{row.entrant}")
+    # Rows are appended, so recordings of trials with another seed stay too.
+    safe = re.sub(r"[^\w.-]+", "_", f"{row.challenge}-{row.entrant}")[:150] + f"-seed{row.seed}"
     recordings: dict[str, list[str]] = {}
     kept = {"best": best, "worst": worst} if len(played) > 1 else {"best": best}
     with Progress(f"record {entry.challenge}, {row.entrant}", len(kept)) as progress:

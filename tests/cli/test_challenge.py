@@ -31,7 +31,7 @@ def test_rows_are_kept_and_repeat_bit_for_bit(tmp_path: Path) -> None:
     assert [row["entrant"] for row in said["rows"]] == ["ours", "chance"]
     assert said["rows"][1]["blue"] == "stand_still"
     assert [Path(file).name for file in said["recordings"]["ours"]["best"]] == [
-        "passing-ours-best-match.robobt.arrows"
+        "passing-ours-seed1-best-match.robobt.arrows"
     ]
     table = out / "results.jsonl"
     again = json.loads(run("challenge", "table", table, "--check", "--workers", "1", "--json"))
@@ -51,6 +51,16 @@ def test_a_single_trial_is_recorded_once(tmp_path: Path) -> None:
     assert list(recordings) == ["best"]
     assert [Path(file).exists() for file in recordings["best"]] == [True]
     assert not list((tmp_path / "one").glob("*worst*"))
+
+
+@pytest.mark.integration
+def test_recordings_of_another_seed_are_not_replaced(tmp_path: Path) -> None:
+    out = tmp_path / "kept"
+    quick = ("--trials", "1", "--workers", "1", "--set", "ends.time_limit=0.1", "--out", out)
+    for seed in (1, 2):
+        run("challenge", "passing", "--blue", "stand_still", *quick, "--seed", seed)
+    assert len(list(out.glob("*.robobt.arrows"))) == 2
+    assert len((out / "results.jsonl").read_text().splitlines()) == 2
 
 
 def test_realism_and_a_changed_delay_go_together() -> None:
