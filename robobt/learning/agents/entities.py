@@ -63,10 +63,12 @@ class EntityNetwork(nn.Module):
         own = torch.cat([scaled[..., first:end] for first, end in self._rest], -1)
         parts = [own]
         for group, encoder in zip(self._groups, self.encoders, strict=True):
-            if group.places == 0:
-                parts.append(torch.zeros_like(own[..., :1]).expand(*own.shape[:-1], 2 * CODE_SIZE))
-                continue
             first, size = group.first, len(group.empty)
+            if group.places == 0:
+                # Nobody, but the encoder stays in the graph, so that its weights have gradients: 0.
+                nobody = torch.zeros_like(own[..., :1]).unsqueeze(-2)
+                parts.append(encoder(own, nobody.expand(*own.shape[:-1], 1, size), nobody))
+                continue
             end = first + group.places * size
             others = scaled[..., first:end].reshape(*scaled.shape[:-1], group.places, size)
             empty = self.empty[first : first + size]

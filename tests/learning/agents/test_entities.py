@@ -92,6 +92,14 @@ def test_each_robot_matters() -> None:
             before = after
 
 
+def test_a_team_of_one_has_gradients_for_all_weights() -> None:
+    one = actor(0, 1)
+    own, beside, against = team(6, 0, 1)
+    seen = torch.from_numpy(rows(own, beside, against, (0, 1)).astype(np.float32))
+    gradients = torch.autograd.grad(one(seen).sum(), [*one.parameters()])
+    assert all(bool(torch.isfinite(gradient).all()) for gradient in gradients)
+
+
 def test_a_mate_is_not_an_opponent() -> None:
     own, beside, against = team(4, 2, 2)
     one = actor(2, 2)
