@@ -70,8 +70,8 @@ class Patrol(Skill):
         return self.run()
 
 
-@PLAYS.register("patrol")
-def patrol(
+@PLAYS.register("drive_between")
+def drive_between(
     *, from_x: float = 0.0, from_y: float = 0.0, to_x: float = 1.0, to_y: float = 0.0, speed: float = 1.0
 ) -> Behaviour:
     """Drive back and forth."""
@@ -154,7 +154,7 @@ def scenario(simulator: object, policy: str, start: dict[str, float]) -> Scenari
         way = {name: other[name] * (1.0 if name == "speed" else -1.0) for name in PATROL_TRAITS}
         turned = wrap_angle(other["heading"] + pi)
         pose = {"position": (-other["x"], -other["y"]), "heading": turned}
-        yellow.append({"number": k, "play": "patrol", "params": way, "start": pose})
+        yellow.append({"number": k, "play": "drive_between", "params": way, "start": pose})
     blue = {
         "number": 0,
         "play": "to_the_ball",

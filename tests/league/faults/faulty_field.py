@@ -50,7 +50,7 @@ class FaultyField(LeagueWorld):
             for number in range(robots)
         }
         self.stuck: set[RobotId] = set()
-        self.noise, self.cameras = noise, cameras
+        self.noise, self._cameras = noise, cameras
         self.fault: Callable[[float, list[CameraFrame]], Sent] = lambda _, frames: [
             (it, FIRST) for it in frames
         ]
@@ -124,10 +124,10 @@ class FaultyField(LeagueWorld):
     def _look(self) -> list[CameraFrame]:
         now = self.machine_time
         self._number += 1
-        frames = [CameraFrame(camera, self._number, now, now) for camera in range(self.cameras)]
+        frames = [CameraFrame(camera, self._number, now, now) for camera in range(self._cameras)]
         for robot, (x, y, heading) in self.poses.items():
             dx, dy = self._rng.normal(0.0, 1.0, 2) * self.noise
-            camera = int(self.cameras > 1 and x > 0.0)
+            camera = int(self._cameras > 1 and x > 0.0)
             frames[camera].robots.append(RobotDetection(robot, x + dx, y + dy, heading))
         dx, dy = self._rng.normal(0.0, 1.0, 2) * self.noise
         frames[0].balls.append(BallDetection(-0.5 + dx, 0.5 + dy))

@@ -94,6 +94,8 @@ def other_values(parameter: Any) -> list[Any]:
     hint = parameter.hint
     if get_origin(hint) is Literal:
         return list(get_args(hint))
+    if get_origin(hint) is tuple:
+        return [(0.5,) * len(get_args(hint))]
     for part in get_args(hint):
         if isinstance(part, ByName):
             return list(part.registry)
