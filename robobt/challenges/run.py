@@ -61,6 +61,7 @@ class RunResult:
         figures: what was counted; the first is the score.
         trace: hash over every true state of all attempts; equal for equal runs.
         errors: ticks in which a robot's tree failed.
+        first_error: the first failure, and whose; None without one.
         recordings: the files that were recorded.
     """
 
@@ -69,6 +70,7 @@ class RunResult:
     figures: Figures
     trace: str
     errors: int = 0
+    first_error: str | None = None
     recordings: tuple[str, ...] = ()
 
     @property
@@ -156,6 +158,7 @@ def play_run(
     attempts = [entry.of(attempt) for attempt in challenge.attempts(np.random.default_rng(draw))]
     seeds = rest[0].generate_state(len(attempts), np.uint64) >> np.uint64(11)
     judged, traces, errors, files = [], [], 0, []
+    first: str | None = None
     for attempt, attempt_seed in zip(attempts, seeds.tolist(), strict=True):
         file = None
         if record is not None:
@@ -172,6 +175,9 @@ def play_run(
             result = match.result()
         judged.append(judge.figures())
         traces.append(result.trace)
-        errors += sum(robot.errors for robot in result.robots.values())
+        for name, robot in result.robots.items():
+            errors += robot.errors
+            if first is None and robot.first_error is not None:
+                first = f"{name}: {robot.first_error}"
     trace = hashlib.blake2b("".join(traces).encode(), digest_size=16).hexdigest()
-    return RunResult(run, own_seed, challenge.score(judged), trace, errors, tuple(files))
+    return RunResult(run, own_seed, challenge.score(judged), trace, errors, first, tuple(files))

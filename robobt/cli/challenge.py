@@ -28,6 +28,7 @@ from robobt.cli.common import (
     unknown,
     warn,
 )
+from robobt.cli.match_summary import tell_failed
 from robobt.cli.option_groups.scenario import Set, parse_play
 from robobt.cli.options import option
 from robobt.cli.outputs import make_folders
@@ -124,7 +125,7 @@ def challenge(
     (version), commit and source (of the rules); recordings: for each entrant best and worst, lists of
     files, a single trial being the best; repeated: with --check, for each row whether the hash is equal.
 
-    Exit code 1 when --check finds a row that is not equal.
+    Exit code 1 when --check finds a row that is not equal, 3 when a tree failed.
     """
     processes = cores() if workers is None else workers
     if name == TABLE:
@@ -140,19 +141,22 @@ def challenge(
     make_folders({"--out": out}, folders=True)
     if out is not None:
         out.mkdir(exist_ok=True)
-    rows, recordings = [], {}
+    rows, recordings, failures = [], {}, []
     for entrant, entry in entries.items():
         row, played = _play(entry, entrant, trials, seed, processes)
+        failures += [f"{entrant}: {result.first_error}" for result in played if result.first_error]
         rows.append(row)
         if out is not None:
             recordings[entrant] = _keep(out, row, entry, played)
     if as_json:
         print_json({"rows": [asdict(row) for row in rows], "recordings": recordings, "repeated": None})
-        return
-    _print(rows)
-    for entrant, files in recordings.items():
-        for which, names in files.items():
-            say(f"{entrant}, {which} trial: {', '.join(names)}")
+    else:
+        _print(rows)
+        for entrant, files in recordings.items():
+            for which, names in files.items():
+                say(f"{entrant}, {which} trial: {', '.join(names)}")
+    if failures:
+        tell_failed(failures[0])
 
 
 def _play(

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NoReturn
 
+import typer
 from rich.markup import escape
 from rich.table import Table
 
@@ -52,6 +53,12 @@ def print_summary(summary: Summary, run: Run, requested: int) -> None:
         f"By wall clock {pace:.{0 if pace >= 10.0 else 1}f} times faster than real time in each process. "
         f"Trace {summary.trace}."
     )
+
+
+def tell_failed(first: str) -> NoReturn:
+    """Tell on stderr of the first failure of a tree, and end with the exit status for that."""
+    warn(f"trees failed, so the exit status is {TREES_FAILED}; the first: {' '.join(first.split())}")
+    raise typer.Exit(TREES_FAILED)
 
 
 def tell_failures(summary: Summary, on_error: str) -> bool:

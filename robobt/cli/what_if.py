@@ -18,6 +18,7 @@ from robobt.cli.common import (
     print_json,
     say,
 )
+from robobt.cli.match_summary import tell_failed
 from robobt.cli.option_groups.scenario import Blue, Yellow, with_teams
 from robobt.cli.options import option
 from robobt.cli.outputs import PAGE, RECORDING, check_ending, make_folders
@@ -108,6 +109,8 @@ def what_if(
     goals, gain and goals_gain (mean, low, high: 95 %; null for "nothing changed"), followed (seconds in the
     log); really (expected and goals in the log), and record (the file, or null); with --scan: moments, each
     with time, robot, decision, replay, and unchanged and changed as decisions.
+
+    Exit code 3 when a robot's tree failed in a branch.
     """
     need("record", "pyarrow")
     from robobt.what_if import load_logged
@@ -132,10 +135,12 @@ def what_if(
     logged = load_logged(file, how.simulator)
     make_folders({"--record": record})
     if search.scan:
-        _scan(logged, file, team, trials, how, search, as_json=as_json)
+        failure = _scan(logged, file, team, trials, how, search, as_json=as_json)
     else:
         assert at is not None
-        _at(logged, file, at, team, trials, plays, how, record, as_json=as_json)
+        failure = _at(logged, file, at, team, trials, plays, how, record, as_json=as_json)
+    if failure is not None:
+        tell_failed(failure)
 
 
 def _at(
@@ -149,7 +154,7 @@ def _at(
     record: Path | None,
     *,
     as_json: bool,
-) -> None:
+) -> str | None:
     from robobt.what_if import compare_decisions
     from robobt.what_if.compare import compared
     from robobt.what_if.decisions import decisions_of
@@ -166,6 +171,7 @@ def _at(
         decisions = decisions_of(logged.recording.frame(tick), holder)
     # In a league log nobody knows what the teams play, so "nothing changed" follows the log.
     others = [side for side in Team if side not in (changed or [ours])]
+    other: Branches | None = None
     follow = others if logged.known else list(Team)
     with Progress("branches", trials * (1 + len(decisions) + bool(changed))) as progress:
         unchanged, found = compare_decisions(
@@ -180,6 +186,7 @@ def _at(
                 with_them.append(other.play(how.seed, trial, follow=others))
                 progress.advance()
             found.append(compared(name, with_them, unchanged, ours))
+    failure = branches.first_error or (None if other is None else other.first_error)
     really = branches.really()
     best = None
     if record is not None:
@@ -204,7 +211,7 @@ def _at(
                 "record": record and str(record),
             }
         )
-        return
+        return failure
     if decisions:
         say(f"{holder} has the ball and decides otherwise.")
     elif not changed:
@@ -220,6 +227,7 @@ def _at(
     say(f"In the log: {really.value(ours):+z.2f} expected goals, {really.lead(ours):+d} goals")
     if record is not None:
         say(f"Replay of '{best.name if best else found[0].name}', with the log drawn beside it: {record}")
+    return failure
 
 
 def _scan(
@@ -231,7 +239,7 @@ def _scan(
     search: Search,
     *,
     as_json: bool,
-) -> None:
+) -> str | None:
     from robobt.what_if import scan
     from robobt.world.game import Team
 
@@ -270,15 +278,16 @@ def _scan(
         ]
         said = {"log": str(file), "team": ours.value, "seconds": how.seconds, "seed": how.seed}
         print_json({**said, "moments": moments})
-        return
+        return branches.first_error
     if not found:
         say(f"{file}: no field player of {ours.value} has the ball in play.")
-        return
+        return branches.first_error
     say(f"{file}: moments at which another decision of {ours.value} would have been worth most")
     print_moments(found)
     say(f"Figures from {trials} branches each that the search has not seen.")
     if search.out is not None:
         say(f"Replays, with the log drawn beside them: {search.out}")
+    return branches.first_error
 
 
 def _replay(

@@ -213,6 +213,12 @@ class Branches:
         goals = {team: result[team.value].goals - scores[team] for team in Team}
         return self._outcome(before, truth, step, followed, goals)
 
+    @property
+    def first_error(self) -> str | None:
+        """The first failure of a robot's tree in any branch, and whose; None without one."""
+        failed = self._match.measures.robots.items()
+        return next((f"{robot}: {one.first_error}" for robot, one in failed if one.first_error), None)
+
     def really(self) -> Branch:
         """Return what really followed the present moment in the log, as if it were a branch.
 

@@ -101,3 +101,29 @@ def test_a_row_that_cannot_be_played_again_is_named(
 def test_challenges_are_listed_with_their_rules() -> None:
     shown = run("list", "challenges")
     assert "passing" in shown
+
+
+FAILING = """
+from robobt.plays.base import PLAYS
+from robobt.skills.base import Skill, skill
+
+
+@skill
+class FailsHere(Skill):
+    def on_running(self):
+        raise RuntimeError("no way on")
+
+
+@PLAYS.register("fails_here")
+def fails_here():
+    return FailsHere()
+"""
+
+
+@pytest.mark.integration
+def test_a_tree_that_fails_is_told_with_its_place_and_its_row_is_kept(tmp_path: Path) -> None:
+    own, out = tmp_path / "own.py", tmp_path / "kept"
+    own.write_text(FAILING)
+    said = run("challenge", "passing", "--blue", "fails_here", "--import", own, *QUICK, "--out", out, code=3)
+    assert "FailsHere: RuntimeError: no way on (own.py:9)" in " ".join(said.split())
+    assert len((out / "results.jsonl").read_text().splitlines()) == 1

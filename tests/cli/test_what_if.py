@@ -20,6 +20,23 @@ from tests.what_if.made import recorded
 pytestmark = pytest.mark.integration
 
 
+FAILING = """
+from robobt.plays.base import PLAYS
+from robobt.skills.base import Skill, skill
+
+
+@skill
+class FailsInABranch(Skill):
+    def on_running(self):
+        raise RuntimeError("no way on")
+
+
+@PLAYS.register("fails_in_a_branch")
+def fails_in_a_branch():
+    return FailsInABranch()
+"""
+
+
 @pytest.fixture(scope="module")
 def small(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return recorded(tmp_path_factory.mktemp("what_if"), 4.0)
@@ -60,6 +77,15 @@ def test_another_play_is_compared_with_what_played(small: Path, time: float) -> 
     shown = invoke(*options)
     assert "blue's goals in the next 0.5 s" in shown.output
     assert "stand_still" in shown.output
+
+
+def test_a_tree_that_fails_in_a_branch_is_told(small: Path, time: float, tmp_path: Path) -> None:
+    own = tmp_path / "own.py"
+    own.write_text(FAILING)
+    shown = invoke(small, "--at", time, "--blue", "fails_in_a_branch", "--import", own, "--trials", 2)
+    assert shown.exit_code == 3
+    assert "FailsInABranch: RuntimeError: no way on (own.py:9)" in " ".join(shown.output.split())
+    assert "nothing changed" in shown.output
 
 
 def test_who_decides_is_told_and_whose_branch_is_recorded(small: Path, time: float) -> None:
