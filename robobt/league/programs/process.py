@@ -35,6 +35,9 @@ _LAST_WORDS_TIMEOUT = 0.5
 _CLEANUP_TIMEOUT = 10.0
 """How long the guard may take to end everything [s]."""
 
+_KILL_TIMEOUT = 5.0
+"""How long processes killed without the guard may take to disappear [s]."""
+
 _GUARD_SCRIPT = r"""
 exec 3<&0 </dev/null
 env "$0" "$@" 3<&- & child=$!
@@ -143,10 +146,10 @@ class TeamProcess(Closing):
             with suppress(OSError):
                 self._process.stdin.close()
             end = time.monotonic() + _CLEANUP_TIMEOUT
-            while self._group() or self._marked():
+            # A killed process takes a moment to disappear, and may have started another one meanwhile.
+            while (self._group() or self._marked()) and time.monotonic() < end + _KILL_TIMEOUT:
                 if time.monotonic() > end:
                     self._kill()
-                    break
                 time.sleep(0.02)
                 self._process.poll()
             self._process.wait()

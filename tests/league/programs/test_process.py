@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import os
 import signal
 import subprocess
 import sys
+import threading
+from contextlib import suppress
 from pathlib import Path
 
 import pytest
@@ -26,6 +29,22 @@ ESCAPES = (
     "time.sleep(600)\n"
 )
 
+TELLS = "print(os.getpid(), flush=True)"
+STOPS_ITS_GUARD = "[os.kill(pid, signal.SIGSTOP) for pid in others()]"
+
+
+def harmful(harm: str) -> str:
+    """Return the code of a program that harms ``others()`` of its group, and stays."""
+    return (
+        "import os, signal, time; from pathlib import Path\n"
+        "def others():\n"
+        "    groups = [(int(file.parent.name), file.read_text().rpartition(')')[2].split()[2])\n"
+        "              for file in Path('/proc').glob('[0-9]*/stat')]\n"
+        "    mine = str(os.getpgrp())\n"
+        "    return sorted(pid for pid, group in groups if group == mine and pid != os.getpid())\n"
+        f"{harm}; time.sleep(600)\n"
+    )
+
 
 def wait_for_words(path: Path) -> str:
     soon(lambda: path.exists() and path.read_text().endswith("\n"), "it says something")
@@ -33,11 +52,11 @@ def wait_for_words(path: Path) -> str:
 
 
 def runs(pid: int) -> bool:
+    # A process that is ending gives up its environment before its files, and shows as a zombie only later.
     try:
-        state = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0]
+        return Path(f"/proc/{pid}/environ").read_bytes() != b""
     except OSError:
         return False
-    return state != "Z"
 
 
 def test_children_that_ignore_signals_and_left_the_group_are_ended_too(tmp_path: Path) -> None:
@@ -64,9 +83,9 @@ def test_who_does_not_end_when_told_is_stubborn(deaf: bool, tmp_path: Path) -> N
 @pytest.mark.parametrize(
     "harm",
     [
-        "os.killpg(0, signal.SIGSTOP)",
-        "[os.kill(pid, signal.SIGSTOP) for pid in others()]",
-        "[os.kill(pid, signal.SIGKILL) for pid in others()[1:]]",
+        f"{TELLS}; os.killpg(0, signal.SIGSTOP)",
+        f"{STOPS_ITS_GUARD}; {TELLS}",
+        f"[os.kill(pid, signal.SIGKILL) for pid in others()[1:]]; {TELLS}",
     ],
     ids=["stops all of its group", "stops its guard", "kills its guard"],
 )
@@ -74,16 +93,26 @@ def test_a_program_is_ended_whatever_it_does_to_its_guard(
     harm: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("robobt.league.programs.process._CLEANUP_TIMEOUT", 1.0)
-    code = (
-        "import os, signal, time; from pathlib import Path\n"
-        "def others():\n"
-        "    groups = [(int(file.parent.name), file.read_text().rpartition(')')[2].split()[2])\n"
-        "              for file in Path('/proc').glob('[0-9]*/stat')]\n"
-        "    mine = str(os.getpgrp())\n"
-        "    return sorted(pid for pid, group in groups if group == mine and pid != os.getpid())\n"
-        f"print(os.getpid(), flush=True); {harm}; time.sleep(600)\n"
-    )
     output = tmp_path / "out.txt"
+    with TeamProcess([sys.executable, "-S", "-c", harmful(harm)], tmp_path, output):
+        child = int(wait_for_words(output))
+    assert not runs(child)
+
+
+def test_closing_waits_until_what_it_killed_is_gone(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    kill = os.kill
+
+    def kill_later(process: int, number: int) -> None:
+        def kill_now() -> None:
+            with suppress(OSError):
+                kill(process, number)
+
+        threading.Timer(1.0, kill_now).start()
+
+    monkeypatch.setattr("robobt.league.programs.process._CLEANUP_TIMEOUT", 0.5)
+    monkeypatch.setattr(os, "kill", kill_later)
+    output = tmp_path / "out.txt"
+    code = harmful(f"{STOPS_ITS_GUARD}; os.setsid(); {TELLS}")
     with TeamProcess([sys.executable, "-S", "-c", code], tmp_path, output):
         child = int(wait_for_words(output))
     assert not runs(child)
