@@ -26,7 +26,7 @@ from robobt.cli.progress import Progress as Progress
 from robobt.cli.screen import FittedTable
 from robobt.cli.screen import console as console
 from robobt.cli.screen import errors as errors
-from robobt.config.errors import ConfigError, RobobtError, unknown_name
+from robobt.config.errors import ConfigError, RobobtError
 from robobt.config.extras import missing_extra
 from robobt.config.seeds import MAX_SEED as MAX_SEED
 from robobt.signals import Terminated, at_the_latest_after, ending
@@ -174,7 +174,7 @@ def _nothing() -> None:
 def unknown(name: str, registry: Registry[_T]) -> typer.BadParameter:
     """Make the usage error for an unknown name, with the known ones or what is wrong with its package."""
     problem = registry.problem_with(name)
-    there = f"no {registry.kind} is called {name!r}; {unknown_name(name, registry)}"
+    there = f"no {registry.kind} is called {name!r}; {registry.meant(name)}"
     return typer.BadParameter(there if problem is None else problem)
 
 

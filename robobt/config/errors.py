@@ -92,8 +92,11 @@ def short_repr(value: object) -> str:
 FEW = 6
 """Number of names listed even if one was probably meant."""
 
+MANY = 12
+"""Number of names that are still listed where a command lists them, too."""
 
-def unknown_name(name: object, known: Iterable[str], there_are: str = "there are") -> str:
+
+def unknown_name(name: object, known: Iterable[str], there_are: str = "there are", command: str = "") -> str:
     """Return the end of a message about an unknown name: the likely name, the known ones, or both if few.
 
     Of a name that has changed it says what it is now.
@@ -102,6 +105,7 @@ def unknown_name(name: object, known: Iterable[str], there_are: str = "there are
         name: the unknown name.
         known: the known names.
         there_are: words in front of their list.
+        command: the command that lists the names, given in place of more than :data:`MANY` of them.
     """
     there = list(known)
     if (now := RENAMED.get(str(name))) in there:
@@ -110,6 +114,8 @@ def unknown_name(name: object, known: Iterable[str], there_are: str = "there are
     guess = f"did you mean {' or '.join(meant)}?"
     if meant and len(there) > FEW:
         return guess
+    if command and len(there) > MANY:
+        return f"'{command}' lists all {len(there)}"
     listed = f"{there_are} {', '.join(there) or 'none'}"
     return f"{listed}; {guess}" if meant else listed
 

@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from functools import lru_cache
 from pathlib import Path
 
-from robobt.config.errors import short_repr, unknown_name
+from robobt.config.errors import short_repr
 from robobt.config.process import users_code
 from robobt.models.file import SUFFIXES, ModelError
 from robobt.models.find import find_model, rename_models
@@ -95,7 +95,7 @@ def problem_with_play(name: str) -> str | None:
                 f"'attack_learned:policy={inner}' ('robobt show {inner}' names its skill)"
             )
         return PLAYS.problem_with(inner) or (
-            f"no play is called {short_repr(inner)}{where}; {unknown_name(inner, PLAYS)}; "
+            f"no play is called {short_repr(inner)}{where}; {PLAYS.meant(inner)}; "
             "those of your own files come with --import FILE or as FILE.py:NAME"
         )
 

@@ -294,7 +294,7 @@ def _part(robot: RobotSetup) -> RobotPlay:
 def _unknown(name: str) -> str:
     bundled = bundled_scenarios()
     meant = close_names(name, [*PLAYS, *bundled])
-    there = f"Plays are {', '.join(PLAYS)}; scenarios {', '.join(bundled)}"
+    there = "'robobt list plays' and 'robobt list scenarios' list what there is"
     if name in RENAMED:
         return f"no play is called {name!r}; {unknown_name(name, [*PLAYS, *bundled])}"
     return PLAYS.problem_with(name) or (

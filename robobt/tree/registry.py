@@ -101,6 +101,11 @@ class Registry(Generic[T]):
         self._load()
         return self._problems.get(name)
 
+    def meant(self, name: object) -> str:
+        """Return the end of a message about a name that is not there: which are near, or all."""
+        command = "" if self.group is None else f"robobt list {self.group.rpartition('.')[2]}"
+        return unknown_name(name, self, command=command)
+
     def source(self, name: str) -> str | None:
         """Return the distribution whose entry point brought ``name``, None for the package's own entries."""
         return self._sources.get(name)
@@ -109,8 +114,8 @@ class Registry(Generic[T]):
         """Return the entry.
 
         Raises:
-            KeyError: no such name; the message lists the names there are, or says
-                why the entry of another package could not be loaded.
+            KeyError: no such name; the message lists the names there are, names the
+                nearest of many, or says why the entry of another package could not be loaded.
         """
         own = self._own()
         if name in own:
@@ -121,7 +126,7 @@ class Registry(Generic[T]):
         if name not in self._entries:
             if name in self._problems:
                 raise KeyError(self._problems[name])
-            raise KeyError(f"no {self.kind} is called {name!r}; {unknown_name(name, self)}")
+            raise KeyError(f"no {self.kind} is called {name!r}; {self.meant(name)}")
         return self._entries[name]
 
     def __contains__(self, name: object) -> bool:

@@ -65,6 +65,8 @@ def test_few_names_are_listed_and_of_many_the_nearest() -> None:
     assert unknown_name("a", []) == "there are none"
     many = [f"name_{letter}" for letter in "abcdefghij"]
     assert unknown_name("other", many) == f"there are {', '.join(many)}"
+    assert unknown_name("other", many * 2, command="robobt list names") == "'robobt list names' lists all 20"
+    assert unknown_name("name_c", many * 2, command="robobt list names").startswith("did you mean name_c")
     assert unknown_name("name_c", many).count("name_") == 3
     assert close_names("NAME-a", many)[0] == "name_a"
 

@@ -108,7 +108,7 @@ def test_a_play_takes_its_restart_and_leaves_the_ball_alone_then() -> None:
     ("plays", "said"),
     [
         ([], "plays: names 0, for 1 robots with the role play"),
-        (["nobody"], "plays.0.play: no play is called 'nobody'; there are attack_"),
+        (["nobody"], "plays.0.play: no play is called 'nobody'; 'robobt list plays' lists all"),
         ([{"play": "attack_main", "params": {"sped": 1}}], "plays.0.params.sped: attack_main has no such"),
         (
             [{"play": "attack_main", "params": {"speed_factor": "x"}}],

@@ -94,6 +94,7 @@ def test_python_files_come_with_the_entrant(tmp_path: Path) -> None:
     ("text", "problem"),
     [
         ("no_such_play", "no play is called 'no_such_play'"),
+        ("zzz", "'robobt list plays' and 'robobt list scenarios' list what there is"),
         ("no_such.yaml", "no_such.yaml: cannot be read"),
         ("no_such:blue", "no such file or bundled scenario"),
         ("table4_trial1_own:yellow", "yellow has no robot there"),

@@ -6,7 +6,7 @@ from typing import Annotated, Any, Self
 
 from pydantic import BeforeValidator, Field, model_validator
 
-from robobt.config.errors import FieldError, unknown_name
+from robobt.config.errors import FieldError
 from robobt.config.validation import Settings
 from robobt.plays import PLAYS
 from robobt.plays.files import build_play
@@ -27,7 +27,7 @@ class PlaySettings(Settings):
     @model_validator(mode="after")
     def _buildable(self) -> Self:
         if self.play not in PLAYS:
-            raise FieldError("play", f"no play is called {self.play!r}; {unknown_name(self.play, PLAYS)}")
+            raise FieldError("play", f"no play is called {self.play!r}; {PLAYS.meant(self.play)}")
         try:
             # A play without parameters always builds, and building may take time to load a model.
             if self.params:

@@ -154,7 +154,10 @@ class TestFields:
     @pytest.mark.parametrize(
         ("changes", "expected"),
         [
-            ({"robots": {"blue": [robot(play="x")]}}, "robots.blue.0.play: no play is called 'x'; there are"),
+            (
+                {"robots": {"blue": [robot(play="x")]}},
+                "robots.blue.0.play: no play is called 'x'; 'robobt list plays' lists all",
+            ),
             ({"robots": {"blue": [robot(number=-1)]}}, "robots.blue.0.number: input should be greater"),
             ({"robots": {"blue": [robot(), robot()]}}, "robots.blue.1.number: blue has two robots 0"),
             ({"robots": {}}, "robots: there is no robot"),
