@@ -7,9 +7,7 @@ from dataclasses import dataclass
 from functools import partial
 from typing import ClassVar
 
-import numpy as np
-
-from robobt.challenges.challenge import CHALLENGES, Challenge, ChallengeAttempt, Figures
+from robobt.challenges.challenge import CHALLENGES, ChallengeAttempt, Figures, FixedChallenge
 from robobt.match.referee.automatic import AutomaticReferee
 from robobt.match.referee.events import Decision, EventKind
 from robobt.match.scenario.scenario import Scenario, scenario_from
@@ -132,7 +130,7 @@ class PlacementJudge:
 
 
 @CHALLENGES.register("ball_placement")
-class BallPlacement(Challenge):
+class BallPlacement(FixedChallenge):
     """Bring eight balls to their spots within 30 s each, with six robots and nobody else on the field."""
 
     title = "Eight ball placements, one try each"
@@ -146,7 +144,7 @@ class BallPlacement(Challenge):
         "chance": "stand_still",
     }
 
-    def attempts(self, generator: np.random.Generator) -> Sequence[ChallengeAttempt]:  # noqa: ARG002
+    def fixed_attempts(self) -> Sequence[ChallengeAttempt]:
         """Return the eight scenarios of the rules."""
         return [self._attempt(number, *given) for number, given in enumerate(PLACEMENTS, 1)]
 

@@ -78,6 +78,18 @@ class Challenge(ABC):
         """Return the figures of a run from those of its attempts; the first is the score."""
 
 
+class FixedChallenge(Challenge):
+    """A challenge whose rules leave nothing open, so that every run has the same attempts."""
+
+    @abstractmethod
+    def fixed_attempts(self) -> Sequence[ChallengeAttempt]:
+        """Return the attempts of every run, in order."""
+
+    def attempts(self, generator: np.random.Generator) -> Sequence[ChallengeAttempt]:  # noqa: ARG002
+        """Return the attempts of every run; nothing is drawn from ``generator``."""
+        return self.fixed_attempts()
+
+
 CHALLENGES: Registry[type[Challenge]] = Registry(
     "challenge",
     group="robobt.challenges",

@@ -5,9 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import ClassVar
 
-import numpy as np
-
-from robobt.challenges.challenge import CHALLENGES, Challenge, ChallengeAttempt, Figures
+from robobt.challenges.challenge import CHALLENGES, ChallengeAttempt, Figures, FixedChallenge
 from robobt.match.referee.automatic import AutomaticReferee
 from robobt.match.referee.settings import RefereeSettings
 from robobt.match.referee.verdicts import FOULS
@@ -81,10 +79,10 @@ class CooperationJudge:
         scored = self._before is not None and scorer(frame.field, self._before, ball) is Team.BLUE
         self._before = ball
         if scored and last == JUNIOR:
-            self.time = round(frame.time, 1)
+            self.time = frame.time
             self.earned["goal"] = 10.0
-            self.earned["in 15 s"] = 10.0 if self.time <= 15.0 else 0.0
-            self.earned["in 20 s"] = 10.0 if self.time <= 20.0 else 0.0
+            self.earned["in 15 s"] = 10.0 if self.time <= 15.0 + 1e-9 else 0.0
+            self.earned["in 20 s"] = 10.0 if self.time <= 20.0 + 1e-9 else 0.0
         return scored
 
     def figures(self) -> Figures:
@@ -97,7 +95,7 @@ class CooperationJudge:
 
 
 @CHALLENGES.register("cooperation")
-class Cooperation(Challenge):
+class Cooperation(FixedChallenge):
     """One robot passes, the other shoots the goal, within 15 s; the best three of five tries count.
 
     Both robots are robobt's, as the simulator has no junior robot; blue plays what yellow plays in the rules.
@@ -114,7 +112,7 @@ class Cooperation(Challenge):
         "chance": "stand_still",
     }
 
-    def attempts(self, generator: np.random.Generator) -> Sequence[ChallengeAttempt]:  # noqa: ARG002
+    def fixed_attempts(self) -> Sequence[ChallengeAttempt]:
         """Return five tries."""
         limits = {"max_speed": FAST_ROBOT}
         places = {MAJOR: [-2.5, 1.0], JUNIOR: [-0.5, -2.0]}

@@ -5,9 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import ClassVar
 
-import numpy as np
-
-from robobt.challenges.challenge import CHALLENGES, Challenge, ChallengeAttempt, Figures
+from robobt.challenges.challenge import CHALLENGES, ChallengeAttempt, Figures, FixedChallenge
 from robobt.match.scenario.scenario import scenario_from
 from robobt.skills.challenges.carry_along import GATE_POSTS, GATES
 from robobt.world.game import GameState
@@ -73,7 +71,11 @@ class GateJudge:
                 (_across(place, a, b) for place in places), (ROBOT_RADIUS, BALL_RADIUS), strict=True
             )
         ]
-        if sides[0] != sides[1] or sides[0] == 0 or not keeps_ball(me, frame.ball):
+        if not keeps_ball(me, frame.ball):
+            # Who loses the ball on the way through begins again with it.
+            self._side, self._through = 0, [False, False]
+            return False
+        if sides[0] != sides[1] or sides[0] == 0:
             return False
         if self._side == -sides[0] and all(self._through):
             self.passed += 1
@@ -111,7 +113,7 @@ def _sign(value: float) -> int:
 
 
 @CHALLENGES.register("dribbling")
-class GateDribbling(Challenge):
+class GateDribbling(FixedChallenge):
     """Carry the ball through nine gates between standing robots, in order; the best of three trials."""
 
     title = "Nine gates with the ball, the best of three trials"
@@ -134,7 +136,7 @@ class GateDribbling(Challenge):
         6: (1.0, 2.5),
     }
 
-    def attempts(self, generator: np.random.Generator) -> Sequence[ChallengeAttempt]:  # noqa: ARG002
+    def fixed_attempts(self) -> Sequence[ChallengeAttempt]:
         """Return three trials."""
         scenario = scenario_from(
             {

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import partial
 from math import nan
 from typing import ClassVar
 
 import numpy as np
 
-from robobt.challenges.challenge import CHALLENGES, Challenge, ChallengeAttempt, Figures
+from robobt.challenges.challenge import CHALLENGES, Challenge, ChallengeAttempt, Figures, FixedChallenge
 from robobt.challenges.obstacle_course import KNOWN, ObstacleCourse, unseen
 from robobt.challenges.touching import CourseTouch, touched
 from robobt.match.referee.events import Decision
@@ -147,7 +147,7 @@ def course_attempt(course: ObstacleCourse, name: str) -> ChallengeAttempt:
 
 def free_attempt(course: ObstacleCourse) -> ChallengeAttempt:
     """Return the same course without robots in the way, the goalkeeper with the ball aside."""
-    goalkeeper = replace(KNOWN[0].obstacles[0])
+    goalkeeper = KNOWN[0].obstacles[0]
     return course_attempt(ObstacleCourse("free", course.start, (goalkeeper,), 0), "free")
 
 
@@ -161,7 +161,7 @@ _SOURCE = "RoboCup 2025 Obstacle Avoidance Challenge, RoboCup-SSL/technical-chal
 
 
 @CHALLENGES.register("obstacles")
-class Obstacles(Challenge):
+class Obstacles(FixedChallenge):
     """Drive through the two published example courses, three trials each; the best one counts."""
 
     title = "The published obstacle courses, the best of three trials each"
@@ -170,7 +170,7 @@ class Obstacles(Challenge):
     most = 60.0
     entrants: ClassVar[Mapping[str, str]] = _ENTRANTS
 
-    def attempts(self, generator: np.random.Generator) -> Sequence[ChallengeAttempt]:  # noqa: ARG002
+    def fixed_attempts(self) -> Sequence[ChallengeAttempt]:
         """Return three trials of each course."""
         return [course_attempt(course, f"{course.name}-{trial}") for course in KNOWN for trial in (1, 2, 3)]
 

@@ -6,9 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import ClassVar
 
-import numpy as np
-
-from robobt.challenges.challenge import CHALLENGES, Challenge, ChallengeAttempt, Figures
+from robobt.challenges.challenge import CHALLENGES, ChallengeAttempt, Figures, FixedChallenge
 from robobt.challenges.passes import PassCounter
 from robobt.match.referee.events import EventKind, RefereeEvent
 from robobt.match.referee.referee import Referee
@@ -107,7 +105,7 @@ class PassingJudge:
 
 
 @CHALLENGES.register("passing")
-class Passing(Challenge):
+class Passing(FixedChallenge):
     """Play as many passes of at least 1 m as possible in two halves of two minutes, four against four."""
 
     title = "Passes against another team, 4 against 4, two halves of 2 min"
@@ -121,7 +119,7 @@ class Passing(Challenge):
     }
     opponent = True
 
-    def attempts(self, generator: np.random.Generator) -> Sequence[ChallengeAttempt]:  # noqa: ARG002
+    def fixed_attempts(self) -> Sequence[ChallengeAttempt]:
         """Return the match."""
         places = [((-0.9, 0.0), 0.2), ((-1.2, 1.5), 0.5), ((-1.2, -1.5), 0.5), ((-3.0, 0.0), 0.5)]
 

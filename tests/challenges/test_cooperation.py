@@ -41,7 +41,9 @@ def goal(time: float) -> list[Seen]:
     ]
 
 
-@pytest.mark.parametrize(("time", "points"), [(14.0, 42.0), (19.0, 32.0), (25.0, 22.0)])
+@pytest.mark.parametrize(
+    ("time", "points"), [(14.0, 42.0), (15.0, 42.0), (15.02, 32.0), (19.0, 32.0), (20.04, 22.0), (25.0, 22.0)]
+)
 def test_a_goal_earns_more_the_sooner_it_falls(time: float, points: float) -> None:
     told = judged([PASS, *goal(time)])
     assert (told["points"], told["time"]) == (points, time)

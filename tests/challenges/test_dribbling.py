@@ -70,6 +70,31 @@ def test_a_way_round_the_gate_does_not_count() -> None:
     assert judge.passed == 0
 
 
+def test_a_ball_kicked_through_and_caught_again_does_not_count() -> None:
+    judge = GateJudge()
+    a, b = (np.array(GateDribbling.posts[number]) for number in GATE_POSTS["A"])
+    along = (b - a) / np.hypot(*(b - a))
+    normal, middle = np.array((along[1], -along[0])), 0.5 * (a + b)
+    facing = float(np.arctan2(*normal[::-1]))
+
+    def seen(robot: float, ball: float) -> None:
+        (x, y), (ball_x, ball_y) = (middle + robot * normal).tolist(), (middle + ball * normal).tolist()
+        me = RobotState(0, x, y, facing, ball_contact=ball - robot <= HELD)
+        judge.see(Frame(0.0, DIVISION_B, BallState(ball_x, ball_y), (me,), POSTS), OPEN_PLAY)
+
+    for way in np.arange(-0.4, -0.2, 0.02):
+        seen(way, way + HELD)
+    for ahead in np.arange(0.0, 0.5, 0.05):
+        seen(-0.2, -0.2 + HELD + ahead)
+    for way in np.arange(-0.2, 0.3, 0.02):
+        seen(way, max(0.39, way + HELD))
+    assert judge.passed == 0
+    # Back through the gate with the ball, nothing is lost: it counts.
+    for way in np.arange(0.3, -0.4, -0.02):
+        seen(way, way + HELD)
+    assert judge.passed == 1
+
+
 def test_the_best_trial_has_most_gates_then_least_time() -> None:
     trials = [
         {"gates": 3.0, "failed": 0.0, "time": 9.0},
