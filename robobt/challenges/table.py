@@ -20,7 +20,6 @@ from pydantic import ConfigDict, Field, TypeAdapter, ValidationError
 from robobt import __version__
 from robobt.challenges.challenge import CHALLENGES, Figures
 from robobt.challenges.run import ChallengeEntry, RunResult, play_runs
-from robobt.config.commit import source_commit
 from robobt.config.errors import RobobtError
 from robobt.match.loop import WorldFactory
 from robobt.statistics import mean_interval
@@ -52,7 +51,8 @@ class Row:
         figures: means of all that was counted, by name, each over the runs that have it.
         trace: hash over the true states of all runs; equal for equal runs.
         robobt: version of robobt.
-        commit: commit of the code, followed by "+" if files were changed since; empty if unknown.
+        commit: commit of the code when the runs began, followed by "+" if files were changed since; empty if
+            unknown.
         source: the rules, with year and version.
     """
 
@@ -84,7 +84,9 @@ class Row:
         return ChallengeEntry(self.challenge, (self.blue, self.params), yellow, self.settings)
 
 
-def row_of(entry: ChallengeEntry, entrant: str, seed: int, results: Sequence[RunResult]) -> Row:
+def row_of(
+    entry: ChallengeEntry, entrant: str, seed: int, results: Sequence[RunResult], commit: str = ""
+) -> Row:
     """Return the row of an entrant's runs.
 
     Args:
@@ -92,6 +94,7 @@ def row_of(entry: ChallengeEntry, entrant: str, seed: int, results: Sequence[Run
         entrant: what the row is called.
         seed: seed of the runs.
         results: the runs, in the order of their numbers.
+        commit: the commit of the code when the runs began; empty if unknown.
     """
     challenge = CHALLENGES[entry.challenge]
     scores = [result.score for result in results]
@@ -117,7 +120,7 @@ def row_of(entry: ChallengeEntry, entrant: str, seed: int, results: Sequence[Run
         unit=challenge.unit,
         figures=_means([result.figures for result in results]),
         trace=trace_of(results),
-        commit=source_commit(),
+        commit=commit,
         source=challenge.source,
     )
 

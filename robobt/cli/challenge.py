@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -32,7 +33,7 @@ from robobt.cli.match_summary import tell_failed
 from robobt.cli.option_groups.scenario import Set, parse_play
 from robobt.cli.options import option
 from robobt.cli.outputs import make_folders
-from robobt.config.errors import RobobtError, unknown_name
+from robobt.config.errors import RobobtError
 from robobt.config.wording import counted
 
 if TYPE_CHECKING:
@@ -123,9 +124,10 @@ def challenge(
     seed, scores (of each trial), score (their mean), low and high (95 % interval, null where all scores are
     equal), unit, figures (means of all that was counted), trace (hash over all true states), robobt
     (version), commit and source (of the rules); recordings: for each entrant best and worst, lists of
-    files, a single trial being the best; repeated: with --check, for each row whether the hash is equal.
+    files, a single trial being the best; repeated: with --check, for each row whether the hash is equal, null
+    where it cannot be played.
 
-    Exit code 1 when --check finds a row that is not equal, 3 when a tree failed.
+    Exit code 1 when --check finds a row that is not equal or cannot be played, 3 when a tree failed.
     """
     processes = cores() if workers is None else workers
     if name == TABLE:
@@ -164,14 +166,17 @@ def _play(
 ) -> tuple[Row, list[RunResult]]:
     from robobt.challenges.run import play_runs
     from robobt.challenges.table import row_of
+    from robobt.config.commit import source_commit
     from robobt.worlds import sim_world
 
+    # Files may change while the trials are played.
+    commit = source_commit()
     with Progress(f"{entry.challenge}, {entrant}", trials) as progress:
         played = play_runs(entry, trials, seed, sim_world, workers, lambda _: progress.advance())
     errors = sum(result.errors for result in played)
     if errors:
         warn(f"{entrant}: trees failed in {counted(errors, 'tick')}")
-    return row_of(entry, entrant, seed, played), played
+    return row_of(entry, entrant, seed, played, commit), played
 
 
 def _keep(folder: Path, row: Row, entry: ChallengeEntry, played: list[RunResult]) -> dict[str, list[str]]:
@@ -195,43 +200,54 @@ def _keep(folder: Path, row: Row, entry: ChallengeEntry, played: list[RunResult]
 
 
 def _show(path: Path | None, check: bool, workers: int, *, as_json: bool) -> None:
-    from robobt.challenges import CHALLENGES
-    from robobt.challenges.table import TableError, read_rows, repeats
-    from robobt.worlds import sim_world
+    from robobt.challenges.table import read_rows
 
     if path is None:
         raise typer.BadParameter(f"'robobt challenge {TABLE}' needs a file of results", param_hint="FILE")
     rows = read_rows(path)
-    repeated = None
+    repeated: list[bool | None] | None = None
+    problems: list[str] = []
     if check:
+        repeated = []
         with Progress(TABLE, len(rows)) as progress:
-            repeated = []
             for number, row in enumerate(rows, 1):
-                if row.challenge not in CHALLENGES:
-                    raise TableError(
-                        f"{path}, row {number}: challenge: no challenge is called {row.challenge!r}; "
-                        f"{unknown_name(row.challenge, CHALLENGES)}"
-                    )
-                try:
-                    repeated.append(repeats(row, sim_world, workers))
-                except RobobtError as error:
-                    raise TableError(f"{path}, row {number}: {error}") from error
+                equal, problem = _repeated(row, workers)
+                repeated.append(equal)
+                if problem is not None:
+                    problems.append(f"{path}, row {number}: {problem}")
                 progress.advance()
     if as_json:
         print_json({"rows": [asdict(row) for row in rows], "recordings": {}, "repeated": repeated})
     else:
         _print(rows, repeated)
+    for problem in problems:
+        warn(problem)
     if repeated is not None and not all(repeated):
         raise typer.Exit(1)
 
 
-def _print(rows: list[Row], repeated: list[bool] | None = None) -> None:
+def _repeated(row: Row, workers: int) -> tuple[bool | None, str | None]:
+    """Play a row again; return whether the hash is equal, or None and why it cannot be played."""
+    from robobt.challenges import CHALLENGES
+    from robobt.challenges.table import repeats
+    from robobt.worlds import sim_world
+
+    if row.challenge not in CHALLENGES:
+        missing = f"no challenge is called {row.challenge!r}; {CHALLENGES.meant(row.challenge)}"
+        return None, f"challenge: {missing}"
+    try:
+        return repeats(row, sim_world, workers), None
+    except RobobtError as error:
+        return None, str(error)
+
+
+def _print(rows: list[Row], repeated: Sequence[bool | None] | None = None) -> None:
     shown = table("challenge", "entrant", "score", "95 % interval", "trials", "conditions", "hash", "commit")
     for index, row in enumerate(rows):
         between = "-" if row.low is None or row.high is None else f"{row.low:.1f} to {row.high:.1f}"
         trace = row.trace[:8]
         if repeated is not None:
-            trace += " equal" if repeated[index] else " differs"
+            trace += {True: " equal", False: " differs", None: " not played"}[repeated[index]]
         shown.add_row(
             row.challenge,
             name_lines(row.entrant, 80),

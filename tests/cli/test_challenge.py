@@ -93,9 +93,26 @@ def test_a_row_that_cannot_be_played_again_is_named(
     row = row_of(entry, "ours", 1, [RunResult(0, 1, {"passes": 1.0}, "a")])
     file = tmp_path / "results.jsonl"
     append_row(file, replace(row, **{field: value}))  # type: ignore[arg-type]
-    shown = run("challenge", "table", file, "--check", "--workers", "1", code=1)
+    append_row(file, replace(row, settings={"ends.time_limit": 0.05}))
+    shown = " ".join(run("challenge", "table", file, "--check", "--workers", "1", code=1).split())
     assert "results.jsonl, row 1: " in shown
     assert problem in shown
+    # The rows after it are played all the same.
+    assert "not played" in shown
+    assert "differs" in shown
+
+
+def test_a_row_holds_the_commit_with_which_its_runs_began(monkeypatch: pytest.MonkeyPatch) -> None:
+    now = {"commit": "before"}
+
+    def played(*_given: object) -> list[RunResult]:
+        now["commit"] = "after"
+        return [RunResult(0, 1, {"passes": 1.0}, "a")]
+
+    monkeypatch.setattr("robobt.config.commit.source_commit", lambda: now["commit"])
+    monkeypatch.setattr("robobt.challenges.run.play_runs", played)
+    said = json.loads(run("challenge", "passing", "--trials", "1", "--json"))
+    assert said["rows"][0]["commit"] == "before"
 
 
 def test_challenges_are_listed_with_their_rules() -> None:
