@@ -123,6 +123,8 @@ def what_if(
         raise typer.BadParameter("goes with --scan; --record is for --at", param_hint="--out")
     if not search.scan and (search.begin or search.end is not None):
         raise typer.BadParameter("goes with --scan", param_hint="--from, --to")
+    if not search.scan and (search.every, search.moments) != (Search.every, Search.moments):
+        raise typer.BadParameter("goes with --scan", param_hint="--every, --moments")
     if team is not None:
         one_of([team], ["blue", "yellow"], "--team")
     if record is not None:

@@ -120,6 +120,8 @@ def test_a_match_is_searched_and_each_moment_has_a_replay(small: Path) -> None:
         (("--scan", "--blue", "stand_still"), "goes with --at"),
         (("--at", 1.0, "--out", "moments"), "goes with --scan"),
         (("--at", 1.0, "--to", 2.0), "goes with --scan"),
+        (("--at", 1.0, "--every", 0.2), "goes with --scan"),
+        (("--at", 1.0, "--moments", 2), "goes with --scan"),
         (("--at", 1.0, "--team", "red"), "must be one of 'blue', 'yellow', not 'red'"),
         (("--at", 99.0), "holds from 0 to"),
         (("--scan", "--from", 99.0), "holds from 0 to"),
