@@ -5,19 +5,19 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import ClassVar
 
+import numpy as np
+
 from robobt.challenges.challenge import CHALLENGES, ChallengeAttempt, Figures, FixedChallenge
+from robobt.challenges.gates import POSTS_TOUCHED, GateCounter
 from robobt.match.scenario.scenario import scenario_from
-from robobt.skills.challenges.carry_along import GATE_POSTS, GATES
+from robobt.skills.challenges.carry_along import GATES
 from robobt.world.game import GameState
 from robobt.world.geometry import Point, distance
 from robobt.world.rules import ball_out, keeps_ball
-from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS, Frame
+from robobt.world.state import Frame
 
 GATES_TIME = 120.0
 """Time limit of a trial [s]; the rules of 2022 have none."""
-
-_POSTS_TOUCHED = 2.0 * ROBOT_RADIUS + 0.002
-"""Two robots whose centres are this near touch [m]; contact is seen once a tick."""
 
 _BALL_START = (-3.5, -2.36)
 """Start of the ball [m], read off the rules' picture."""
@@ -38,18 +38,20 @@ class GateJudge:
     """
 
     def __init__(self) -> None:
-        self.passed = 0
+        self._gates = GateCounter(1)
         self.failed = self.placed = False
         self.time: float | None = None
-        self._side = 0
-        self._through = [False, False]
-        self._before: tuple[Point, Point] | None = None
+
+    @property
+    def passed(self) -> int:
+        """Number of gates passed."""
+        return int(self._gates.passed[0])
 
     def see(self, frame: Frame, game: GameState) -> bool:  # noqa: ARG002
         """Take in the next true ``frame`` of the ``game``; return whether the trial is over."""
         (me,) = frame.own
         posts = {robot.id: robot.position for robot in frame.opponents}
-        touched = any(distance(me.position, post) <= _POSTS_TOUCHED for post in posts.values())
+        touched = any(distance(me.position, post) <= POSTS_TOUCHED for post in posts.values())
         self.failed = touched or ball_out(frame.field, frame.ball.position)
         if self.failed:
             return True
@@ -58,32 +60,10 @@ class GateJudge:
             rests = frame.ball.speed < 0.05 and not keeps_ball(me, frame.ball)
             self.placed = rests and abs(gap - _END_GAP) <= _END_SLACK
             return self.placed
-        a, b = (posts[number] for number in GATE_POSTS[GATES[self.passed]])
-        places = me.position, frame.ball.position
-        if self._before is not None:
-            for index, (before, now) in enumerate(zip(self._before, places, strict=True)):
-                if _sign(_across(before, a, b)) != _sign(_across(now, a, b)):
-                    self._through[index] = _between(before, now, a, b)
-        self._before = places
-        sides = [
-            _sign(gap) if abs(gap) > radius else 0
-            for gap, radius in zip(
-                (_across(place, a, b) for place in places), (ROBOT_RADIUS, BALL_RADIUS), strict=True
-            )
-        ]
-        if not keeps_ball(me, frame.ball):
-            # Who loses the ball on the way through begins again with it.
-            self._side, self._through = 0, [False, False]
-            return False
-        if sides[0] != sides[1] or sides[0] == 0:
-            return False
-        if self._side == -sides[0] and all(self._through):
-            self.passed += 1
+        places = np.array([[posts[number] for number in sorted(posts)]])
+        kept = np.array([keeps_ball(me, frame.ball)])
+        if self._gates.see(places, np.array([me.position]), np.array([frame.ball.position]), kept)[0]:
             self.time = frame.time
-            # The next gate is crossed from where they are now.
-            self._side, self._through, self._before = 0, [False, False], None
-        else:
-            self._side, self._through = sides[0], [False, False]
         return False
 
     def figures(self) -> Figures:
@@ -91,25 +71,6 @@ class GateJudge:
         gates = 0.0 if self.failed else float(self.passed)
         told = {"gates": gates, "failed": float(self.failed), "placed": float(self.placed)}
         return told if self.time is None or self.failed else {**told, "time": self.time}
-
-
-def _across(place: Point, a: Point, b: Point) -> float:
-    """Return the signed distance of a place from the line through two posts [m]."""
-    dx, dy = b[0] - a[0], b[1] - a[1]
-    return ((place[0] - a[0]) * dy - (place[1] - a[1]) * dx) / distance(a, b)
-
-
-def _between(before: Point, now: Point, a: Point, b: Point) -> bool:
-    """Return whether the line is crossed between the posts."""
-    first, second = _across(before, a, b), _across(now, a, b)
-    share = first / (first - second) if first != second else 0.0
-    x, y = (before[i] + share * (now[i] - before[i]) for i in (0, 1))
-    along = (x - a[0]) * (b[0] - a[0]) + (y - a[1]) * (b[1] - a[1])
-    return 0.0 < along < distance(a, b) ** 2
-
-
-def _sign(value: float) -> int:
-    return 1 if value > 0.0 else -1
 
 
 @CHALLENGES.register("dribbling")

@@ -32,6 +32,8 @@ _SHIPPED_TASKS = {
     "attack3v2": "soccer.suite:Attack3v2",
     "small3v3": "soccer.suite:Small3v3",
     "obstacle_course": "obstacle_course.task:ObstacleCourseTask",
+    "dribbling": "dribbling.task:DribblingTask",
+    "passing": "passing.task:PassingTask",
 }
 """Modules of the shipped tasks; each is imported at first use."""
 

@@ -13,10 +13,13 @@ from __future__ import annotations
 
 from math import copysign, cos, hypot, pi, radians, sin
 
+import numpy as np
+from numpy.typing import NDArray
+
 from robobt.world.compiled import compilable
 from robobt.world.field import FieldGeometry
 from robobt.world.game import Team
-from robobt.world.geometry import Point
+from robobt.world.geometry import FloatArray, Point
 from robobt.world.records import Ball, Robot
 from robobt.world.state import (
     BALL_RADIUS,
@@ -210,6 +213,13 @@ def against_hull(dx: float, dy: float, heading: float) -> bool:
     if dx * dx + dy * dy > reach * reach:
         return False
     return cos(heading) * dx + sin(heading) * dy <= _FRONT_DISTANCE + BALL_RADIUS + _TOUCH_GAP
+
+
+def against_hulls(dx: FloatArray, dy: FloatArray, heading: FloatArray) -> NDArray[np.bool_]:
+    """Return :func:`against_hull` for arrays of one shape."""
+    near = dx * dx + dy * dy <= (ROBOT_RADIUS + BALL_RADIUS + _TOUCH_GAP) ** 2
+    before = np.cos(heading) * dx + np.sin(heading) * dy <= _FRONT_DISTANCE + BALL_RADIUS + _TOUCH_GAP
+    return np.asarray(near & before)
 
 
 def has_ball(robot: RobotState, ball: BallState, sector: float = MOUTH_SECTOR) -> bool:

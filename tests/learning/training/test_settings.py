@@ -193,7 +193,7 @@ def test_a_renamed_setting_is_there_under_its_new_name_only(group):
 
 
 def test_what_does_not_exist_is_told_with_what_does():
-    with pytest.raises(SettingsError, match="there are go_to_ball, shoot"):
+    with pytest.raises(SettingsError, match="'robobt list tasks' lists all"):
         load_settings("dance")
     with pytest.raises(SettingsError, match="there are cmu, d4pg, ddpg, ddpgfd, fast, paper"):
         load_settings("shoot", "slow")

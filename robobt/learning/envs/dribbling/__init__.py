@@ -1,0 +1,1 @@
+"""The dribbling challenge of 2022 for learners."""

@@ -1,0 +1,1 @@
+"""The passing challenge of 2025 for learners."""
