@@ -111,7 +111,8 @@ def scan(
 
     Every decision at every moment is played in a few branches. The best quarter gets twice as many, and so on
     (successive halving). The figures of those that are left come from fresh branches, because the best of
-    many has also been lucky.
+    many has also been lucky; those of the first come from fresh ones once more, because the first of a few
+    has been, too.
 
     Args:
         logged: the match.
@@ -128,7 +129,7 @@ def scan(
         on_branch: called after each branch with the numbers of branches played and to play.
 
     Returns:
-        The moments in the order of their figures.
+        The moments in the order of their figures; the first one's were drawn again after that.
     """
     follow = [team.other] if logged.known else list(Team)
     moments = moments_of(logged, team, every, begin, end)
@@ -159,8 +160,13 @@ def scan(
             abs(logged.recording.times[one.tick] - time) >= apart for one in chosen
         ):
             chosen.append(arm)
-    found = [_figures(branches, arm, team, seed, trials, follow, tell) for arm in chosen]
-    return sorted(found, key=lambda one: -one.gain)
+    fresh = range(_FIRST_FRESH, _FIRST_FRESH + trials)
+    found = [(_figures(branches, arm, team, seed, fresh, follow, tell), arm) for arm in chosen]
+    found.sort(key=lambda pair: -pair[0].gain)
+    if len(found) > 1:
+        numbers, best = range(fresh.stop, fresh.stop + trials), found[0][1]
+        found[0] = _figures(branches, best, team, seed, numbers, follow, tell), best
+    return [one for one, _ in found]
 
 
 def _rounds(arms: int, first: int, enough: int) -> list[tuple[int, int]]:
@@ -199,12 +205,11 @@ def _figures(
     arm: _Arm,
     team: Team,
     seed: int,
-    trials: int,
+    numbers: range,
     follow: Collection[Team],
     tell: Callable[[], None],
 ) -> Found:
     branches.begin(arm.tick)
-    numbers = range(_FIRST_FRESH, _FIRST_FRESH + trials)
     unchanged: list[Branch] = []
     changed: list[Branch] = []
     for number in numbers:
@@ -216,9 +221,9 @@ def _figures(
     assert with_it.gain is not None
     mean = with_it.gain.mean
     gains = [one.value(team) - other.value(team) for one, other in zip(changed, unchanged, strict=True)]
-    typical = min(range(trials), key=lambda i: abs(gains[i] - mean))
+    typical = min(range(len(numbers)), key=lambda i: abs(gains[i] - mean))
     time = float(branches.logged.recording.times[arm.tick])
-    return Found(time, arm.tick, arm.decision, without, with_it, _FIRST_FRESH + typical)
+    return Found(time, arm.tick, arm.decision, without, with_it, numbers[typical])
 
 
 def _keeper(logged: LoggedMatch, team: Team) -> int | None:

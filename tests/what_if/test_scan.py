@@ -78,6 +78,10 @@ def test_the_figures_of_the_best_of_many_are_not_their_luck(logged: LoggedMatch)
     assert abs(fmean(gains)) < 0.1
 
 
+def test_the_first_of_the_list_is_not_lucky_either(logged: LoggedMatch) -> None:
+    assert abs(fmean(searched(Luck(logged), seed)[0].gain for seed in range(40))) < 0.08
+
+
 def test_equal_values_leave_room_for_what_was_not_seen() -> None:
     none = MeanEstimate.of([0.0] * 100)
     assert none.mean == 0.0
