@@ -86,6 +86,10 @@ _COMMAND_GROUPS = {
 }
 """The groups of commands, each with its help and its commands."""
 
+_START_OF_LISTS = {"OPENBLAS_NUM_THREADS": "1", "PYDANTIC_DISABLE_PLUGINS": "__all__"}
+"""Environment of commands that only list names: numpy starts no threads, which would wait in a busy loop, and
+pydantic does not look for plugins among all installed packages; together a sixth of such a command."""
+
 app: typer.Typer
 """The whole of it, made when it is first used."""
 
@@ -169,6 +173,7 @@ def main() -> None:
         raise SystemExit(2)
     if _only_names(sys.argv[1:]):
         compile_nothing()
+        os.environ.update(_START_OF_LISTS)
     run(application, "robobt")
 
 

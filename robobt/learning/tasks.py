@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+import ast
+import inspect
 import sys
 from collections.abc import Callable, Iterator
+from functools import cache
 from importlib import import_module
+from importlib.resources import files
 from typing import Any, TypeVar
 
 import gymnasium
@@ -96,6 +100,22 @@ class Tasks(Registry[type[Any]]):
     def __len__(self) -> int:
         return len(_SHIPPED_TASKS) + super().__len__()
 
+    def documentation(self, name: str) -> str:
+        """Return a task's docstring.
+
+        That of a shipped task is read from its file: to import all tasks takes longer than the rest of a
+        command that lists them.
+
+        Raises:
+            KeyError: no such task.
+        """
+        if name not in _SHIPPED_TASKS:
+            return inspect.getdoc(self[name]) or ""
+        module, _, inner = _SHIPPED_TASKS[name].partition(":")
+        docstrings = _docstrings(module)
+        # A task of the suite is made from its settings, and has their docstring.
+        return docstrings.get(inner) or docstrings[f"{inner}Settings"]
+
     def _shipped(self, name: str) -> type[Any]:
         module, _, inner = _SHIPPED_TASKS[name].partition(":")
         task: type[Any] = getattr(import_module(f"{_ENVS}.{module}"), inner)
@@ -108,6 +128,15 @@ class Tasks(Registry[type[Any]]):
             return False
         files = [getattr(sys.modules.get(one.__module__), "__file__", None) for one in (before, task)]
         return files[0] is not None and files[0] == files[1] and before.__qualname__ == task.__qualname__
+
+
+@cache
+def _docstrings(module: str) -> dict[str, str]:
+    """Return the docstrings of the classes in a module below :data:`_ENVS`, without importing it."""
+    *folders, file = module.split(".")
+    source = files("robobt.learning").joinpath("envs", *folders, f"{file}.py").read_text(encoding="utf-8")
+    classes = [node for node in ast.parse(source).body if isinstance(node, ast.ClassDef)]
+    return {node.name: ast.get_docstring(node) or "" for node in classes}
 
 
 def _tell_gymnasium(name: str, namespace: str = "") -> None:

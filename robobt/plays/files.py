@@ -30,7 +30,6 @@ from robobt.tree.interop import (
     describe_tree,
     load_tree_file,
     tree_files,
-    write_xml,
     write_yaml,
 )
 from robobt.tree.interop.model import Text, Value
@@ -202,4 +201,6 @@ def tree_xml(root: Behaviour, name: str) -> str:
     Raises:
         ValueError: as for :func:`tree_yaml`, or XML cannot express the tree.
     """
+    from robobt.tree.interop import write_xml
+
     return write_xml(describe_tree(root, VOCABULARY, name), VOCABULARY)

@@ -33,6 +33,8 @@ NEEDED = {
     "list plays --json": {"numpy", "pydantic"},
     "list skills": {"numpy", "pydantic"},
     "list scenarios --json": {"numpy", "pydantic"},
+    "list tasks": {"numpy", "pydantic"},
+    "list challenges": {"numpy", "pydantic"},
 }
 """What has been imported after each of these commands, which run one after the other in one process."""
 

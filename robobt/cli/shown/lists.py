@@ -16,12 +16,12 @@ if TYPE_CHECKING:
     from pydantic.fields import FieldInfo
 
     from robobt.challenges import Challenge
-    from robobt.learning.envs.arena_task import ArenaTask
+    from robobt.learning.tasks import Tasks
     from robobt.skills.base import Skill
     from robobt.tree.parameters import Parameter
     from robobt.tree.registry import Registry
 
-_T = TypeVar("_T")
+_Names = TypeVar("_Names", bound="Registry[Any]")
 
 
 def list_registered(kind: str, name: str | None, *, as_json: bool) -> None:
@@ -59,7 +59,7 @@ def _policies() -> Registry[Any]:
     return GO_TO_BALL_POLICIES
 
 
-def _tasks() -> Registry[Any]:
+def _tasks() -> Tasks:
     from robobt.learning import TASKS
 
     return TASKS
@@ -71,32 +71,36 @@ def _challenges() -> Registry[Any]:
     return CHALLENGES
 
 
-def _challenge(cls: type[Challenge]) -> _Listed:
+def _challenge(challenges: Registry[type[Challenge]], name: str) -> _Listed:
+    cls = challenges[name]
     return _Listed(f"{_doc(cls)}\n\nRules: {cls.source}", [])
 
 
-def _play(play: Callable[..., object]) -> _Listed:
+def _play(plays: Registry[Callable[..., object]], name: str) -> _Listed:
     from robobt.tree.parameters import parameters_of
 
+    play = plays[name]
     return _Listed(_doc(play), parameters_of(play))
 
 
-def _skill(cls: type[Skill]) -> _Listed:
+def _skill(skills: Registry[type[Skill]], name: str) -> _Listed:
     from robobt.tree.parameters import parameters_of
 
+    cls = skills[name]
     own = [parameter for parameter in parameters_of(cls) if parameter.name != "name"]
     store = {"reads": list(cls.reads), "writes": list(cls.writes)}
     return _Listed(_doc(cls), own, store, condition=cls.condition)
 
 
-def _task(task: type[ArenaTask]) -> _Listed:
-    return _Listed(_doc(task), [])
+def _task(tasks: Tasks, name: str) -> _Listed:
+    return _Listed(tasks.documentation(name), [])
 
 
-def _with_settings(entry: object) -> _Listed:
+def _with_settings(registry: Registry[object], name: str) -> _Listed:
     """Describe what may be named alone or with settings, which are the fields of a pydantic model."""
     from robobt.tree.parameters import Parameter
 
+    entry = registry[name]
     fields: dict[str, FieldInfo] = getattr(entry, "model_fields", {})
     own = [
         Parameter(key, given.annotation, inspect.Parameter.empty if given.is_required() else given.default)
@@ -123,12 +127,12 @@ class _Listed:
 
 
 def _list(
-    kind: str, registry: Registry[_T], name: str | None, as_json: bool, listed: Callable[[_T], _Listed]
+    kind: str, registry: _Names, name: str | None, as_json: bool, listed: Callable[[_Names, str], _Listed]
 ) -> None:
     if name is not None and name not in registry:
         raise unknown(name, registry)
     names = list(registry) if name is None else [name]
-    entries = {entry: listed(registry[entry]) for entry in names}
+    entries = {entry: listed(registry, entry) for entry in names}
     if as_json:
         things = [_data(entry, one, registry.source(entry)) for entry, one in entries.items()]
         print_json({kind: things, "problems": list(registry.problems)})
@@ -144,7 +148,7 @@ class _Listing:
     """How a kind of thing is listed: where it is registered, and what is said of each."""
 
     registry: Callable[[], Registry[Any]]
-    describe: Callable[[Any], _Listed]
+    describe: Callable[[Any, str], _Listed]
 
 
 _KINDS = {
@@ -197,18 +201,17 @@ def _data(name: str, listed: _Listed, package: str | None) -> dict[str, object]:
 def _print(name: str, listed: _Listed, package: str | None, *, whole: bool) -> None:
     origin = "" if package is None else f"  from {escape(package)}"
     marked = "  [cyan]condition[/cyan]" if listed.condition else ""
-    console.print(f"[bold]{escape(name)}[/bold]{marked}{origin}")
     doc = listed.doc if whole else listed.doc.partition("\n")[0]
-    console.print(f"  {escape(doc)}".replace("\n", "\n  "), soft_wrap=True)
+    lines = [f"[bold]{escape(name)}[/bold]{marked}{origin}", f"  {escape(doc)}".replace("\n", "\n  ")]
     for parameter in listed.parameters:
         meaning = listed.meanings.get(parameter.name, "")
-        console.print(
-            f"    [cyan]{escape(str(parameter))}[/cyan]" + (f"  {escape(meaning)}" if meaning else ""),
-            soft_wrap=True,
+        lines.append(
+            f"    [cyan]{escape(str(parameter))}[/cyan]" + (f"  {escape(meaning)}" if meaning else "")
         )
-    for verb, names in listed.store.items():
-        if names:
-            console.print(f"    {verb} {', '.join(names)}", style="dim")
+    lines += [
+        f"[dim]    {verb} {escape(', '.join(names))}[/dim]" for verb, names in listed.store.items() if names
+    ]
+    console.print("\n".join(lines), soft_wrap=True)
 
 
 def _doc(thing: object) -> str:

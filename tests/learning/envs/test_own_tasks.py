@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inspect
 import subprocess
 import sys
 from collections.abc import Iterator
@@ -80,6 +81,10 @@ def own(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> str:
     monkeypatch.chdir(tmp_path)
     Path("own.py").write_text(OWN)
     return "own.py:Middle"
+
+
+def test_a_task_has_one_docstring_whether_it_is_read_or_imported() -> None:
+    assert all(TASKS.documentation(name) == inspect.getdoc(TASKS[name]) for name in TASKS)
 
 
 def test_its_parts_decide_what_is_seen_earned_and_ended(own: str) -> None:
