@@ -9,7 +9,9 @@ from typing import Annotated
 
 import numpy as np
 import typer
+from numpy.typing import NDArray
 
+from benchmarks.minimal_kernel import FloatArray, MinimalArenas
 from robobt.cli import Json, console, print_json, say, table
 from robobt.cli.common import errors
 from robobt.sim import COMMAND, Arenas, SimWorld, preset
@@ -35,6 +37,10 @@ TRAINING_PERIOD, TRAINING_STEPS = 0.03, 4
 """Control period of training and physics steps in it [s]."""
 
 
+MINIMAL_SIDES, MINIMAL_ARENAS = (1, 3, 6), 256
+"""Robots a team, and arenas, of the comparison with :mod:`benchmarks.minimal_kernel`."""
+
+
 def bench_arenas(
     seconds: float = 2.0, sides: Sequence[int] = SIDES, arenas: Sequence[int] = ARENAS
 ) -> dict[int, dict[int, float]]:
@@ -51,32 +57,72 @@ def bench_arenas(
         for each of ``sides`` and each of ``arenas``, control steps a second of CPU time, all arenas
         together. Deciding what to do is not in the time.
     """
-    return {side: {n: _crowded(side, n, seconds) for n in arenas} for side in sides}
+    return {
+        side: {n: float(n / np.median(_crowded((_arenas(side, n),), seconds))) for n in arenas}
+        for side in sides
+    }
 
 
-def _crowded(side: int, n: int, seconds: float) -> float:
+def bench_minimal(
+    seconds: float = 2.0, sides: Sequence[int] = MINIMAL_SIDES, n: int = MINIMAL_ARENAS
+) -> dict[int, dict[str, float]]:
+    """Measure crowded play beside the minimal kernel, in turn, step by step.
+
+    Args:
+        seconds: CPU time for each of ``sides``, both together.
+        sides: robots a team.
+        n: how many arenas.
+
+    Returns:
+        for each of ``sides`` control steps a second of CPU time, ``arenas`` and ``minimal``, and
+        ``minimal_ratio``, the median over the steps of the arenas' time over the kernel's.
+    """
+    figures = {}
+    for side in sides:
+        minimal = MinimalArenas(n, 2 * side, TRAINING_STEPS, TRAINING_PERIOD / TRAINING_STEPS)
+        spent = _crowded((_arenas(side, n), minimal), seconds)
+        ours, least = n / np.median(spent, axis=0)
+        ratio = float(np.median(spent[:, 0] / spent[:, 1]))
+        figures[side] = {"arenas": float(ours), "minimal": float(least), "minimal_ratio": ratio}
+    return figures
+
+
+def _arenas(side: int, n: int) -> Arenas:
     settings = preset("default").model_copy(update={"sub_step": TRAINING_PERIOD / TRAINING_STEPS})
-    arenas = Arenas(DIVISION_B, [None] * (2 * side), settings, TRAINING_PERIOD, n)
-    angles = np.random.default_rng(0).uniform(0, 2 * pi, (n, 1)) + np.arange(2 * side) * pi / side
+    return Arenas(DIVISION_B, [None] * (2 * side), settings, TRAINING_PERIOD, n)
+
+
+def _crowded(fields: Sequence[Arenas | MinimalArenas], seconds: float) -> FloatArray:
+    """Return the CPU time of each counted step of each of the fields, which play in turn, (steps, fields)."""
+    n, robots = fields[0].contact.shape
+    angles = np.random.default_rng(0).uniform(0, 2 * pi, (n, 1)) + np.arange(robots) * 2.0 * pi / robots
     starts = np.stack([0.8 * np.cos(angles), 0.8 * np.sin(angles), angles + pi], axis=-1)
-    commands = np.zeros((n, 2 * side, size(COMMAND)))
-    told = commands.view(COMMAND)[..., 0]
-    spent: list[float] = []
+    commands = np.zeros((n, robots, size(COMMAND)))
+    spent: list[list[float]] = []
     second = round(1.0 / TRAINING_PERIOD)
-    while sum(spent) < seconds:
-        arenas.place(starts, np.zeros((n, 4)))
+    while sum(map(sum, spent)) < seconds:
+        for field in fields:
+            field.place(starts, np.zeros((n, 4)))
         for step in range(3 * second):
-            gap = arenas.balls[:, None, :2] - arenas.robots[..., :2]
-            error = np.arctan2(gap[..., 1], gap[..., 0]) - arenas.robots[..., 2]
-            told["vx"], told["vy"] = 2.0 * np.cos(error), 2.0 * np.sin(error)
-            told["omega"] = 5.0 * np.sin(error)
-            told["kick_speed"] = np.where(arenas.contact, 2.0, 0.0)
-            told["dribbler"] = 1.0
-            begin = process_time()
-            arenas.step(commands)
+            times = []
+            for field in fields:
+                _chase_all(field, commands.view(COMMAND)[..., 0])
+                begin = process_time()
+                field.step(commands)
+                times.append(process_time() - begin)
             if step >= second:
-                spent.append(process_time() - begin)
-    return float(n / np.median(spent))
+                spent.append(times)
+    return np.array(spent)
+
+
+def _chase_all(field: Arenas | MinimalArenas, told: NDArray[np.void]) -> None:
+    """Let all robots drive at the ball, and dribble or kick it."""
+    gap = field.balls[:, None, :2] - field.robots[..., :2]
+    error = np.arctan2(gap[..., 1], gap[..., 0]) - field.robots[..., 2]
+    told["vx"], told["vy"] = 2.0 * np.cos(error), 2.0 * np.sin(error)
+    told["omega"] = 5.0 * np.sin(error)
+    told["kick_speed"] = np.where(field.contact, 2.0, 0.0)
+    told["dribbler"] = 1.0
 
 
 def bench_sim(seconds: float = 4.0) -> dict[str, dict[str, float]]:
@@ -215,15 +261,28 @@ def arenas(
 ) -> None:
     """Measure crowded play in many arenas: control steps a second of CPU time, 4 physics steps in 30 ms.
 
-    Keys of --json: by robots a team, by number of arenas, the steps a second of all arenas together.
+    Keys of --json: by robots a team, by number of arenas, the steps a second of all arenas together; minimal:
+    by robots a team, 256 arenas beside a kernel of a hundred lines that does the least that still plays, with
+    steps a second of both (arenas, minimal) and how many times as long the arenas take (minimal_ratio), the
+    median over steps in turn.
     """
 
     with errors.status("measuring many arenas"):
-        figures = bench_arenas(seconds=seconds)
+        figures, beside = bench_arenas(seconds=seconds), bench_minimal(seconds=seconds)
     if as_json:
-        print_json({str(side): speeds for side, speeds in figures.items()})
+        print_json({**{str(side): speeds for side, speeds in figures.items()}, "minimal": beside})
         return
-    listed = table("a team", *(f"{n:,} arenas" for n in ARENAS))
+    listed = table("a team", *(f"{n:,} arenas" for n in ARENAS), "minimal kernel", "ratio to it")
     for side, speeds in figures.items():
-        listed.add_row(str(side), *(f"{speeds[n]:,.0f}" for n in ARENAS))
+        least = beside.get(side)
+        listed.add_row(
+            str(side),
+            *(f"{speeds[n]:,.0f}" for n in ARENAS),
+            "" if least is None else f"{least['minimal']:,.0f}",
+            "" if least is None else f"{least['minimal_ratio']:.1f}",
+        )
     console.print(listed)
+    say(
+        f"Compared: CPU time of a control step of {MINIMAL_ARENAS} arenas beside one of the minimal kernel, "
+        "in turn; medians, after a second of play that does not count."
+    )
