@@ -133,14 +133,25 @@ class PPO(Learner):
         if last is not None:
             self._gamma = 1.0 - 1.0 / ((1.0 - share) / (1.0 - first) + share / (1.0 - last))
 
-    def update(self, rollout: Rollout, rng: np.random.Generator, policy: PolicyUpdate = "improve") -> None:
+    def update(
+        self,
+        rollout: Rollout,
+        rng: np.random.Generator,
+        policy: PolicyUpdate = "improve",
+        imitation: float = 0.0,
+    ) -> None:
         """Learn from a rollout: the value by (4), and the policy by (3), or by imitation, or not at all.
 
-        A policy that imitates learns to act as the rollout's actions say, whoever acted.
+        A policy that imitates learns to act as the rollout's actions say, whoever acted. One that improves
+        may also stay close to what the rollout's teacher shows (kickstarting, Schmitt et al., 2018): then
+        ``imitation`` is the weight of this loss beside that of (3).
 
         Diagnostics are those of the last epoch, in which the policy is farthest from the one that acted.
         """
         settings = self.settings
+        shown = None
+        if imitation > 0.0 and rollout.shown is not None:
+            shown = torch.from_numpy(rollout.shown.reshape(-1, rollout.shown.shape[2]).astype(np.float32))
         advantage = advantages(rollout, self._gamma, settings.gae_lambda)
         target = advantage + rollout.value
         observation, action, log_probability, advantage_, target_ = (
@@ -153,7 +164,8 @@ class PPO(Learner):
             for rows in torch.split(order, settings.minibatch_size):
                 if policy == "improve":
                     old, gain = log_probability[rows], advantage_[rows]
-                    self._update_policy(observation[rows], action[rows], old, gain, last)
+                    lesson = None if shown is None else (shown[rows], imitation)
+                    self._update_policy(observation[rows], action[rows], old, gain, last, lesson)
                 elif policy == "imitate":
                     self._imitate(observation[rows], action[rows], last)
                 self._update_value(observation[rows], target_[rows], last)
@@ -164,9 +176,18 @@ class PPO(Learner):
             self.diagnostics.add(explained_variance=torch.tensor(explained))
 
     def _update_policy(
-        self, seen: Tensor, action: Tensor, old: Tensor, advantage: Tensor, report: bool = False
+        self,
+        seen: Tensor,
+        action: Tensor,
+        old: Tensor,
+        advantage: Tensor,
+        report: bool = False,
+        lesson: tuple[Tensor, float] | None = None,
     ) -> None:
-        """Take a step of (3), with a bonus for entropy; with ``report`` add to the diagnostics."""
+        """Take a step of (3), with a bonus for entropy; with ``report`` add to the diagnostics.
+
+        ``lesson`` is what a teacher shows, and the weight of imitating it.
+        """
         settings = self.settings
         output = self._policy_output(seen)
         log_probability, entropy = self._evaluate_actions(output, action)
@@ -177,6 +198,12 @@ class PPO(Learner):
         gain = torch.minimum(ratio * advantage, clipped * advantage).mean()
         mean_entropy = entropy.mean()
         loss = -gain - settings.ent_coef * mean_entropy
+        if lesson is not None:
+            shown, weight = lesson
+            missed, off = self._missed(output, shown)
+            loss = loss + weight * missed
+            if report:
+                self._report_imitation(missed, off)
         weights = self._actor_adam.weights
         norm = self._actor_adam.clipped_step(torch.autograd.grad(loss, weights), settings.max_grad_norm)
         if not report:
@@ -193,16 +220,23 @@ class PPO(Learner):
 
     def _imitate(self, seen: Tensor, shown: Tensor, report: bool = False) -> None:
         """Take a step towards the actions shown: of squared errors, and of cross entropy for thresholds."""
-        output, sure = self._policy_output(seen), self._continuous
-        off = (output - shown)[:, sure].square().sum(-1)
-        missed = softplus(-output[:, ~sure] * shown[:, ~sure].sign()).sum(-1)
-        loss = (off + missed).mean()
+        loss, off = self._missed(self._policy_output(seen), shown)
         # The spread is not part of this loss.
         weights = list(self.actor.parameters())
         gradients = [*torch.autograd.grad(loss, weights), torch.zeros_like(self._log_std)]
         self._actor_adam.clipped_step(gradients, self.settings.max_grad_norm)
         if report:
-            self.diagnostics.add(imitation_loss=loss.detach(), imitation_error=off.detach().mean().sqrt())
+            self._report_imitation(loss, off)
+
+    def _missed(self, output: Tensor, shown: Tensor) -> tuple[Tensor, Tensor]:
+        """Return the loss of imitation, and its part of squared errors (m,), of outputs (m, action)."""
+        sure = self._continuous
+        off = (output - shown)[:, sure].square().sum(-1)
+        missed = softplus(-output[:, ~sure] * shown[:, ~sure].sign()).sum(-1)
+        return (off + missed).mean(), off
+
+    def _report_imitation(self, loss: Tensor, off: Tensor) -> None:
+        self.diagnostics.add(imitation_loss=loss.detach(), imitation_error=off.detach().mean().sqrt())
 
     def _update_value(self, seen: Tensor, target: Tensor, report: bool = False) -> None:
         """Take a step of (4); with ``report`` add to the diagnostics."""

@@ -23,6 +23,7 @@ class Rollout:
         reward: (T, n).
         terminated: (T, n) whether the episode terminated with this step.
         ended: (T, n) whether it terminated or was truncated.
+        shown: (T, n, A) what a teacher would have done; None without one.
     """
 
     observation: Floats
@@ -33,6 +34,7 @@ class Rollout:
     reward: Floats
     terminated: NDArray[np.bool_]
     ended: NDArray[np.bool_]
+    shown: Floats | None = None
 
     @classmethod
     def empty(cls, ticks: int, n: int, observations: int, actions: int) -> Rollout:

@@ -41,7 +41,7 @@ class Lesson:
 
         ``steps`` have been taken so far.
         """
-        share = 1.0 - steps / self._steps
+        share = 1.0 - steps / self._steps if steps < self._steps else 0.0
         drawn = [np.repeat(rng.random(part.task.n) < share, part.each) for part in self._parts]
         self._acts = np.concatenate(drawn)
 

@@ -64,7 +64,7 @@ class OnPolicyRun(TrainingRun):
             self._task = self._problem.later(self._steps, self._past.decide)
         super()._rebuild()
         self._lesson = None
-        if self._imitates:
+        if self._imitates or self._settings.imitation.weight > 0.0:
             self._lesson = Lesson(self._task, self._settings.imitation)
 
     @property
@@ -118,18 +118,19 @@ class OnPolicyRun(TrainingRun):
         own.load_state_dict(weights)
 
     def _advance(self) -> None:
-        if not self._imitates:
+        weight = self._settings.imitation.weight
+        if not self._imitates and weight == 0.0:
             self._lesson = None
         rollout = self._roll_out()
         share = self._share
         self._agent.set_learning_rates(1.0 - share)
         self._agent.anneal_gamma(share)
         policy: PolicyUpdate = "improve"
-        if self._lesson is not None:
+        if self._imitates:
             policy = "imitate"
         elif self._steps < self._settings.ppo.critic_warmup_steps:
             policy = "keep"
-        self._agent.update(rollout, self._rng, policy)
+        self._agent.update(rollout, self._rng, policy, (1.0 - share) * weight)
         self._steps += rollout.reward.size
 
     def _roll_out(self) -> Rollout:
@@ -140,6 +141,7 @@ class OnPolicyRun(TrainingRun):
         lesson = self._lesson
         if lesson is not None:
             lesson.share_out(self._steps, self._rng)
+            rollout.shown = np.zeros_like(rollout.action)
         for t in range(ticks):
             action, log_probability, value = agent.act(self._observation, self._rng)
             if not np.isfinite(action).all():
@@ -147,8 +149,10 @@ class OnPolicyRun(TrainingRun):
                     f"{self._folder.path}: the policy's action is not finite after {self._steps} steps"
                 )
             done = action
-            if lesson is not None:
-                action, done = lesson.next(action)
+            if lesson is not None and rollout.shown is not None:
+                rollout.shown[t], done = lesson.next(action)
+                if self._imitates:
+                    action = rollout.shown[t]
             step = self._task.step(done)
             if lesson is not None:
                 lesson.begin(step)

@@ -183,7 +183,8 @@ class ImitationSettings(Settings):
     """The first steps of a run, in which the policy imitates a teacher instead of earning rewards.
 
     At first the teacher moves the robots, later more and more often the policy, and the teacher shows what it
-    would have done (DAgger). The value learns from the rewards meanwhile.
+    would have done (DAgger). The value learns from the rewards meanwhile. With a ``weight`` the teacher goes
+    on to show what it would do while the policy learns by itself, so that the policy stays close to it.
     """
 
     teachers: tuple[str, ...] = Field(
@@ -193,11 +194,18 @@ class ImitationSettings(Settings):
     )
     params: dict[str, Any] = Field(default_factory=dict, description="parameters of those that are plays")
     steps: int = Field(0, ge=0, description="steps of imitation; from then on the policy learns by itself")
+    weight: float = Field(
+        0.0,
+        ge=0,
+        le=100,
+        description="weight of imitation beside PPO's own loss after these steps; falls linearly to 0 at the "
+        "last step",
+    )
 
     @model_validator(mode="after")
     def _check(self) -> Self:
-        if bool(self.teachers) != bool(self.steps):
-            raise ValueError("teachers and steps are given together")
+        if bool(self.teachers) != bool(self.steps or self.weight):
+            raise ValueError("teachers are given together with steps or a weight")
         return self
 
 

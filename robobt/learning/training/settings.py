@@ -113,7 +113,7 @@ class TrainSettings(Settings):
                 )
         if len(self.worlds) > min(self.collection.num_envs, self.evaluation.starts):
             raise ValueError("worlds: more than there are arenas or validation starts to share")
-        own = self.stages or self.init is not None or self.pool != PoolSettings() or self.imitation.steps
+        own = self.stages or self.init is not None or self.pool != PoolSettings() or self.imitation.teachers
         if self.learner != "ppo" and own:
             raise ValueError("stages, init, pool and imitation are for learner ppo")
         return self

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from robobt.learning.agents.networks import policy_of
 from robobt.learning.agents.ppo import PPO
 from robobt.learning.agents.rollout import Rollout
 from robobt.learning.agents.settings import PPOSettings
@@ -102,7 +103,7 @@ def test_what_cannot_teach_is_refused() -> None:
         Lesson(past, ImitationSettings(teachers=(MODEL,), steps=10))
     with pytest.raises(TeacherError, match=r"go_to_ball_ddpg: observes go_to_ball"):
         teacher_of(SoccerTask(), "go_to_ball_ddpg", {})
-    with pytest.raises(SettingsError, match="teachers and steps are given together"):
+    with pytest.raises(SettingsError, match="teachers are given together with steps or a weight"):
         load_settings("small3v3", "fast", {"imitation.steps": 100})
     with pytest.raises(SettingsError, match="pool and imitation are for learner ppo"):
         load_settings("shoot", "fast", {"imitation": {"teachers": [MODEL], "steps": 100}})
@@ -128,15 +129,51 @@ def test_imitation_leaves_the_spread_alone() -> None:
     assert (np.sign(answer[:, 1]) == rollout.action[0, :, 1]).mean() > 0.8
 
 
+def test_a_policy_that_improves_stays_close_to_what_a_teacher_shows() -> None:
+    def off_after(weight: float) -> float:
+        one = PPO(PPOSettings(hidden_sizes=(16,), init_std=0.5), (1.0, 1.0), (True, False), 0)
+        rng = np.random.default_rng(0)
+        rollout = Rollout.empty(20, 20, 2, 2)
+        rollout.shown = np.zeros_like(rollout.action)
+        rollout.ended[:] = rollout.terminated[:] = True
+        for _ in range(30):
+            rollout.observation[:] = rng.normal(size=(20, 20, 2))
+            rollout.shown[..., 0] = np.clip(-rollout.observation[..., 0], -1.0, 1.0)
+            rollout.shown[..., 1] = -1.0
+            for t in range(20):
+                acted = one.act(rollout.observation[t], rng)
+                rollout.action[t], rollout.log_probability[t], rollout.value[t] = acted
+            # It is rewarded for the opposite of what the teacher does.
+            rollout.reward[:] = -rollout.action[..., 0] * rollout.shown[..., 0]
+            one.update(rollout, rng, imitation=weight)
+        output = policy_of(one.actor)(rollout.observation.reshape(-1, 2))
+        return float(np.abs(output[:, 0] - rollout.shown[..., 0].ravel()).mean())
+
+    assert off_after(0.0) > 0.6
+    assert off_after(10.0) < 0.25
+
+
+def test_the_lesson_goes_on_if_it_has_a_weight(tmp_path: Path) -> None:
+    imitation = {"teachers": [MODEL], "weight": 0.5}
+    found = {}
+    for name, changes in (("taught", {"imitation": imitation}), ("alone", {})):
+        network = {"ppo.network": "entities", "environment.yellow": ["goalkeeper", "challenge", "challenge"]}
+        found[name] = train(load_settings("small3v3", "fast", TINY | network | changes), tmp_path / name)
+    (first, *_), (other, *_) = found["taught"].validations, found["alone"].validations
+    assert {"imitation_loss", "policy_loss"} <= set(first.losses)
+    assert "imitation_loss" not in other.losses
+    assert found["taught"].figures["weights"] != found["alone"].figures["weights"]
+
+
 @pytest.mark.integration
-@pytest.mark.parametrize("teacher", [MODEL, "team_player"])
+@pytest.mark.parametrize(("teacher", "weight"), [(MODEL, 0.5), ("team_player", 0.0)])
 def test_a_run_that_imitates_and_is_broken_off_ends_as_if_it_had_not_been(
-    tmp_path: Path, teacher: str
+    tmp_path: Path, teacher: str, weight: float
 ) -> None:
     changes = {
         "ppo.network": "entities",
         "environment.yellow": ["goalkeeper", "challenge", "challenge"],
-        "imitation": {"teachers": [teacher], "steps": 360},
+        "imitation": {"teachers": [teacher], "steps": 360, "weight": weight},
     }
     settings = load_settings("small3v3", "fast", TINY | changes)
     whole = train(settings, tmp_path / "whole")
