@@ -6,6 +6,7 @@ Importing this package registers all shipped plays in :data:`PLAYS`.
 from typing import TYPE_CHECKING
 
 from robobt.config.lazy import lazily
+from robobt.plays.any_number_player import any_number_player as any_number_player
 from robobt.plays.attack_expected import attack_expected as attack_expected
 from robobt.plays.attack_learned import attack_learned as attack_learned
 from robobt.plays.attack_main import attack_main as attack_main

@@ -130,6 +130,32 @@ def test_a_policy_may_play_the_attack_alone(tmp_path: Path) -> None:
     assert not set(learned) & {"wall", "mark"}
 
 
+@pytest.mark.integration
+@pytest.mark.parametrize(("scenario_name", "numbers"), [("three_v_three", 3), ("six_v_six", 6)])
+def test_a_policy_plays_every_task_in_a_small_team(tmp_path: Path, scenario_name: str, numbers: int) -> None:
+    model = str(write_model(tmp_path, Passing(), team_card("LearnedSkill", 5, 6)))
+    scenario = load_scenario(scenario_name).lasting(8.0)
+    for number in range(1, numbers):
+        scenario = scenario.with_robot(
+            f"blue {number}", play="team_player", open_play=model, open_play_tasks="by_number"
+        )
+    driven: Counter[tuple[bool, bool]] = Counter()
+    with MatchLoop(scenario, 4, sim_world) as match:
+        mine = [player for player in match.players if player.robot.team is Team.BLUE and player.robot.number]
+        while match.tick():
+            for player in mine:
+                assert not player.problem
+                store = player.store
+                if store.frame.game.in_play:
+                    tip = player.runner.root.tip()
+                    learned = tip is not None and tip.feedback_message == f"driven by {model}"
+                    behind = store.team.plan.tasks[store.me.id] in ("wall", "mark")
+                    driven[behind, learned] += 1
+    assert driven[False, True] > 50
+    assert (driven[True, True] > 50) == (numbers == 3)
+    assert (driven[True, False] > 50) == (numbers == 6)
+
+
 @pytest.fixture(scope="module")
 def watched() -> Watched:
     return Watched()
