@@ -11,6 +11,7 @@ from torch import Tensor
 from torch.utils._python_dispatch import TorchDispatchMode
 from torch.utils._pytree import tree_leaves, tree_map
 
+from robobt.models.checks.answers import usual_answer
 from robobt.models.checks.limits import ELEMENT, MAX_OUTPUT_BYTES, OTHER_TYPE, RECURRENT_GATES, largest_work
 from robobt.models.checks.operations import MOST_PIECES, TRAPPING
 from robobt.models.file import ModelError
@@ -44,6 +45,11 @@ class Bounds(TorchDispatchMode):  # type: ignore[no-untyped-call]
         self._changes = False
         self._divides = False
 
+    @classmethod
+    def _should_skip_dynamo(cls) -> bool:
+        # Torch would import its compiler, which takes over a second, to keep it off what it never compiles.
+        return False
+
     def __torch_dispatch__(
         self,
         func: torch._ops.OpOverload,
@@ -72,11 +78,8 @@ class Bounds(TorchDispatchMode):  # type: ignore[no-untyped-call]
         if _pieces(name, named) > MOST_PIECES:
             raise ModelError(f"aten::{name} would cut a tensor into more than {MOST_PIECES} pieces")
         tensors = [one for one in tree_leaves((args, kwargs)) if isinstance(one, Tensor)]
-        without = tree_map(_without_memory, kwargs)
-        if not tensors or "device" in kwargs:
-            without["device"] = torch.device("meta")
-        answers = tree_leaves(func(*tree_map(_without_memory, args), **without))
-        found = [one for one in answers if isinstance(one, Tensor)]
+        usual = usual_answer(func, args)
+        found = _tried(func, tensors, args, kwargs) if usual is None else [usual]
         if name.rstrip("_") in TRAPPING and not any(one.is_floating_point() for one in found):
             self._check_division(name, named["self"], named["other"])
         self._changes |= func._schema.is_mutable
@@ -100,6 +103,17 @@ class Bounds(TorchDispatchMode):  # type: ignore[no-untyped-call]
         converted = torch.as_tensor(divisor).to(torch.result_type(divided, divisor))
         if bool(((converted == 0) | (converted == -1)).any()):
             raise ModelError(f"aten::{name} divides integers by 0 or -1")
+
+
+def _tried(
+    func: torch._ops.OpOverload, tensors: Sequence[Tensor], args: Sequence[object], kwargs: dict[str, object]
+) -> list[Tensor]:
+    """Return what an operation answers to tensors without memory."""
+    without = tree_map(_without_memory, kwargs)
+    if not tensors or "device" in kwargs:
+        without["device"] = torch.device("meta")
+    answers = tree_leaves(func(*tree_map(_without_memory, args), **without))
+    return [one for one in answers if isinstance(one, Tensor)]
 
 
 def _pieces(name: str, named: Mapping[str, object]) -> int:

@@ -34,5 +34,6 @@ def run_bounded(module: Any, constants: list[Tensor], size: int) -> None:
     """Run a frozen module within bounds, for each number of observations that it will be given."""
     with torch.inference_mode():
         for count in (LARGEST_BATCH, 1):
+            observations = torch.zeros(count, size)
             with Bounds(count, constants):
-                module(torch.zeros(count, size))
+                module(observations)
