@@ -21,6 +21,7 @@ from hypothesis import HealthCheck, settings
 
 from robobt.config.telling import OFTEN
 from robobt.signals import TERMINATE
+from tests import workers
 
 pytest_plugins = ("tests.limits", "robobt.testing.plugin")
 
@@ -40,6 +41,8 @@ settings.register_profile(
     "robobt", derandomize=True, deadline=None, suppress_health_check=[HealthCheck.too_slow]
 )
 settings.load_profile("robobt")
+
+workers.fork_workers()
 
 StartPython = Callable[..., "subprocess.Popen[str]"]
 
@@ -96,6 +99,12 @@ def signals_of_a_terminal() -> Iterator[None]:
         signal.signal(number, handler)
 
 
+@pytest.fixture
+def spawned_workers(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Worker processes start from nothing, as outside of tests."""
+    monkeypatch.setattr(multiprocessing, "get_context", workers.usual)
+
+
 @pytest.fixture(scope="session", autouse=True)
 def _no_process_outlives_the_session() -> Iterator[None]:
     yield
@@ -134,13 +143,12 @@ _THREADS = Path("/proc/self/task")
 
 def _children() -> set[int]:
     """Processes that this one has started and not waited for; empty where there is no /proc."""
-    multiprocessing.active_children()  # waits for those that have ended
-    found: set[int] = set()
+    # This waits for those that have ended.
+    found = {process.pid or 0 for process in multiprocessing.active_children()}
     if _THREADS.exists():
         for thread in os.listdir(_THREADS):
             # Not where it has just ended.
             with suppress(OSError), open(f"{_THREADS}/{thread}/children") as listed:
                 found.update(map(int, listed.read().split()))
-    # Started with the first spawned process, and meant to outlive the others.
-    found.discard(getattr(resource_tracker._resource_tracker, "_pid", None) or 0)
-    return found
+    # Started with the first worker process, and meant to outlive the others.
+    return found - {getattr(resource_tracker._resource_tracker, "_pid", None), workers.server()}

@@ -15,7 +15,11 @@ from robobt.engines.cluster import ClusterError, RayEngine
 from robobt.engines.run import run_tasks, running_on
 from robobt.engines.work import Work
 
-pytestmark = [pytest.mark.integration, pytest.mark.filterwarnings("ignore")]
+pytestmark = [
+    pytest.mark.integration,
+    pytest.mark.usefixtures("spawned_workers"),
+    pytest.mark.filterwarnings("ignore"),
+]
 
 
 _MODULES: dict[str, Any] = sys.modules

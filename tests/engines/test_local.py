@@ -10,7 +10,7 @@ from robobt.config.errors import RobobtError
 from robobt.engines.run import run_tasks
 from robobt.engines.work import Work
 
-pytestmark = pytest.mark.integration
+pytestmark = [pytest.mark.integration, pytest.mark.usefixtures("spawned_workers")]
 
 
 class SquareError(Exception):

@@ -55,6 +55,7 @@ def test_a_trial_does_not_depend_on_the_others():
     assert figures(run_trials_in(scenario(), PlainWorld, 2, seed=1)) != figures(few)
 
 
+@pytest.mark.usefixtures("spawned_workers")
 def test_a_run_over_worker_processes_is_the_same_run(tmp_path: Path):
     """Determinism over processes, in the real simulator: traces, figures and recordings are identical."""
     paths = [tmp_path / f"{workers}.robobt.arrows" for workers in (1, 2)]
