@@ -5,12 +5,14 @@ from __future__ import annotations
 import json
 import re
 import shlex
-from dataclasses import replace
+from collections.abc import Callable
+from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
 
 import numpy as np
 import pytest
+from click.testing import Result
 from typer.testing import CliRunner
 
 from robobt.cli import app
@@ -58,20 +60,42 @@ def seen(recording: Path) -> Observations:
     return load_observations(recording)
 
 
+@dataclass
+class Found:
+    """What the command identifies, how many parts of the work it counts, what it prints and writes."""
+
+    identified: Identification
+    parts: int
+    result: Result
+    file: Path
+
+
 @pytest.fixture(scope="module")
-def found(seen: Observations) -> tuple[Identification, int]:
-    """What is identified from the recording, and how many parts of the work were told as done."""
+def found(recording: Path) -> Found:
+    made: list[Identification] = []
     parts: list[int] = []
-    identified = identify(seen, lambda: parts.append(1))
-    return identified, len(parts)
+
+    def watched(seen: Observations, on_part: Callable[[], None]) -> Identification:
+        def counted() -> None:
+            parts.append(1)
+            on_part()
+
+        made.append(identify(seen, counted))
+        return made[-1]
+
+    file = recording.with_name("field.yaml")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(report, "identify", watched)
+        arguments = ["record", "identify", str(recording), "--out", str(file), "--json"]
+        result = CliRunner().invoke(app, arguments)
+    assert made, result.output
+    return Found(made[0], len(parts), result, file)
 
 
-def test_a_recording_holds_what_was_seen_and_sent(
-    seen: Observations, found: tuple[Identification, int]
-) -> None:
+def test_a_recording_holds_what_was_seen_and_sent(seen: Observations, found: Found) -> None:
     assert len(seen) > 400
     assert all(seen.commanded(robot) for robot in range(len(seen.robots)))
-    assert found[0].delay.value == pytest.approx(0.03, abs=0.003)
+    assert found.identified.delay.value == pytest.approx(0.03, abs=0.003)
 
 
 def test_a_recording_without_detections_is_refused(recording: Path) -> None:
@@ -181,7 +205,7 @@ def test_hops_and_what_a_kick_carries_on_are_played_with(tmp_path: Path) -> None
 @cache
 def late() -> Identification:
     settings = SimSettings(realism=RealismSettings(vision_delay=0.03, command_delay=0.02))
-    return identify(driven(RobotLimits(dead_time=0.04), settings))
+    return identify(driven(RobotLimits(dead_time=0.04), settings, seconds=12.0))
 
 
 @pytest.mark.parametrize("base", ["default", "erforce", "grsim", "real_2025"])
@@ -192,9 +216,9 @@ def test_an_identified_delay_stands_in_place_of_all_that_the_base_has(base: str)
 
 
 def test_what_the_base_alone_says_is_told(
-    recording: Path, found: tuple[Identification, int], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    recording: Path, found: Found, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(report, "identify", lambda *_: found[0])
+    monkeypatch.setattr(report, "identify", lambda *_: found.identified)
     out = tmp_path / "field.yaml"
     arguments = ["record", "identify", str(recording), "--base", "erforce", "--out", str(out)]
     shown = CliRunner().invoke(app, arguments).stdout
@@ -209,17 +233,15 @@ def test_what_the_base_alone_says_is_told(
 
 
 def test_the_command_prints_figures_and_writes_the_file(
-    recording: Path, found: tuple[Identification, int], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    recording: Path, found: Found, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    out = tmp_path / "field.yaml"
-    done = CliRunner().invoke(app, ["record", "identify", str(recording), "--out", str(out), "--json"])
-    assert done.exit_code == 0, done.stderr
-    figures = json.loads(done.stdout)["figures"]
+    assert found.result.exit_code == 0, found.result.stderr
+    figures = json.loads(found.result.stdout)["figures"]
     assert figures["delay"]["seen"]
     assert figures["ball.switch_share"].keys() == {"value", "low", "high", "count", "seen", "unit"}
-    assert preset(str(out)).realism.robot_noise == pytest.approx(0.001, rel=0.1)
+    assert preset(str(found.file)).realism.robot_noise == pytest.approx(0.001, rel=0.1)
     # The same again for the screen, without identifying it once more.
-    monkeypatch.setattr(report, "identify", lambda *_: found[0])
+    monkeypatch.setattr(report, "identify", lambda *_: found.identified)
     shown = CliRunner().invoke(app, ["record", "identify", str(recording)]).stdout
     # The page, the file and the screen have one name for each figure, and one line on a usual screen.
     for name in figures:
@@ -231,14 +253,13 @@ def test_the_command_prints_figures_and_writes_the_file(
 
 
 def test_every_figure_is_on_the_page_and_each_part_of_the_work_is_counted(
-    seen: Observations, found: tuple[Identification, int]
+    seen: Observations, found: Found
 ) -> None:
     page = (Path(__file__).parents[2] / "docs" / "identify.md").read_text(encoding="utf-8")
     named = {it.rpartition(".")[2] for it in re.findall(r"`([a-z._]+)`", page)}
-    identified, parts = found
-    assert {name.rpartition(".")[2] for name, _ in identified.figures()} <= named
+    assert {name.rpartition(".")[2] for name, _ in found.identified.figures()} <= named
     # Whoever waits sees how far it is.
-    assert parts == parts_of(seen) == 1 + len(seen.robots)
+    assert found.parts == parts_of(seen) == 1 + len(seen.robots)
 
 
 @pytest.mark.slow  # it identifies twelve robots

@@ -27,12 +27,12 @@ pytestmark = pytest.mark.integration
 OFFSET, NOISE = 0.02, 0.001
 
 
-def erring() -> Scenario:
+def erring(seconds: float = 12.0) -> Scenario:
     """Three against three on a field with cameras that err."""
     realism = RealismSettings(
         ball_noise=NOISE, robot_noise=NOISE, heading_noise=0.004, object_offset=OFFSET, camera_overlap=1.5
     )
-    scenario = load_scenario("three_v_three").lasting(12.0)
+    scenario = load_scenario("three_v_three").lasting(seconds)
     return scenario.model_copy(
         update={"simulator": {"preset": "default", "realism": realism.model_dump()}, "period": 1 / 60}
     )
@@ -65,7 +65,7 @@ def test_a_field_that_sends_nothing_is_named() -> None:
 def test_a_match_identifies_the_field_on_which_it_was_played(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    scenario, endpoints = erring(), free_endpoints()
+    scenario, endpoints = erring(7.0), free_endpoints()
     settings = settings_from(scenario.simulator)
     robots = {robot: setup.limits_over(settings.limits) for robot, setup in scenario.robots}
     expected = {"field": scenario.field, "robots": robots, "settings": settings, "period": scenario.period}
@@ -76,7 +76,7 @@ def test_a_match_identifies_the_field_on_which_it_was_played(
     ):
         monkeypatch.setattr(cli_match, "world_of", lambda *_: nullcontext(lambda _: world))
         out, file = tmp_path / "field.yaml", tmp_path / "match.robobt.arrows"
-        short = ["three_v_three", "--set", "ends.time_limit=12", "--trials", 1]
+        short = ["three_v_three", "--set", "ends.time_limit=7", "--trials", 1]
         told = json.loads(robobt("match", *short, "--record", file, "--identify", out, "--json"))
     assert told["identified"] == str(out)
     # The recording holds where the cameras are, which a flying ball is seen from.
