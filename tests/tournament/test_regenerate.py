@@ -5,12 +5,12 @@ from __future__ import annotations
 import json
 import shutil
 import sqlite3
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
+from typer.testing import CliRunner
 
+from robobt.cli import app
 from robobt.match.loop import MatchLoop
 from robobt.match.recording import load_recording
 from robobt.match.referee.events import EventKind, RefereeEvent
@@ -53,12 +53,11 @@ def changed(path: Path, statement: str) -> None:
     connection.close()
 
 
-def test_another_process_with_other_workers_plays_them_bit_for_bit(path: Path, tmp_path: Path) -> None:
+def test_other_processes_play_them_bit_for_bit(path: Path, tmp_path: Path) -> None:
     folder = tmp_path / "again"
     words = ["tournament", "results", str(path), "--regenerate", str(folder), "--workers", "2", "--json"]
-    start = f"import sys, tests.match.scripted, robobt.cli; sys.argv[1:] = {words!r}; robobt.cli.main()"
-    done = subprocess.run([sys.executable, "-c", start], capture_output=True, text=True, check=False)
-    assert done.returncode == 0, done.stderr
+    done = CliRunner().invoke(app, words)
+    assert done.exit_code == 0, done.output
     said = json.loads(done.stdout)
     assert said["equal"] == 6
     with MatchStore(path) as store:
@@ -71,7 +70,7 @@ def test_another_process_with_other_workers_plays_them_bit_for_bit(path: Path, t
 
 
 def test_a_store_takes_less_than_a_kilobyte_a_match(tmp_path: Path) -> None:
-    rounds = 100
+    rounds = 20
     many = plan(rounds=rounds)
     path = tmp_path / "many.sqlite"
     with many.open_store(path) as store:

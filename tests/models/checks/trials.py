@@ -11,6 +11,7 @@ import tempfile
 import time
 from collections import Counter
 from collections.abc import Callable
+from importlib import import_module
 from pathlib import Path
 
 import numpy as np
@@ -102,29 +103,35 @@ def _memory(field: str) -> int:
 
 
 def main() -> None:
-    """Try files and print what came of them, a line of JSON each if asked, and a summary."""
+    """Try files and print what came of them, a line of JSON each if asked, and a summary for each format."""
     parser = argparse.ArgumentParser()
-    parser.add_argument("format", choices=sorted(MAKERS))
+    parser.add_argument("format", nargs="+", choices=sorted(MAKERS))
     parser.add_argument("--seed", type=int, default=44)
     parser.add_argument("--count", type=int, default=100)
     parser.add_argument("--each", action="store_true", help="print every trial")
     given = parser.parse_args()
     torch.set_num_threads(1)
-    outcomes: Counter[str] = Counter()
-    most, slowest = 0, 0.0
     with tempfile.TemporaryDirectory() as folder:
         # What the first load imports is no file's doing.
+        import_module("torch._dynamo")
         load_policy(write_model(Path(folder), formats=("torchscript", "onnx")))
         load_policy(Path(folder) / "small.onnx")
-        for number in range(given.count):
-            seed = 1_000_000 * given.seed + number
-            told = trial(lambda seed=seed: MAKERS[given.format](Path(tempfile.mkdtemp(dir=folder)), seed))
-            if given.each:
-                print(json.dumps({"seed": seed} | told), flush=True)
-            outcomes[str(told["outcome"])] += 1
-            most = max(most, int(str(told.get("memory", 0))))
-            slowest = max(slowest, float(str(told["seconds"])))
-    print(json.dumps({"outcomes": outcomes, "memory": most, "seconds": round(slowest, 1)}))
+        for kind in given.format:
+            print(json.dumps(_tried_of(kind, Path(folder), given)))
+
+
+def _tried_of(kind: str, folder: Path, given: argparse.Namespace) -> dict[str, object]:
+    outcomes: Counter[str] = Counter()
+    most, slowest = 0, 0.0
+    for number in range(given.count):
+        seed = 1_000_000 * given.seed + number
+        told = trial(lambda seed=seed: MAKERS[kind](Path(tempfile.mkdtemp(dir=folder)), seed))
+        if given.each:
+            print(json.dumps({"seed": seed} | told), flush=True)
+        outcomes[str(told["outcome"])] += 1
+        most = max(most, int(str(told.get("memory", 0))))
+        slowest = max(slowest, float(str(told["seconds"])))
+    return {"outcomes": outcomes, "memory": most, "seconds": round(slowest, 1)}
 
 
 if __name__ == "__main__":
