@@ -22,7 +22,7 @@ from robobt.sim.chipmunk import (
     load_bodies,
     store_bodies,
 )
-from robobt.sim.contacts.solver import ContactArrays, Solving, collide
+from robobt.sim.contacts.solver import ContactArrays, Solving, begin_contacts, end_contacts, solve
 from robobt.sim.contacts.touching import Shapes
 from robobt.sim.flight import fly, pass_over
 from robobt.sim.hinge import take_hold, tie
@@ -38,6 +38,7 @@ from robobt.sim.records import (
     EDGE,
     FLIGHT,
     FRONT,
+    HALFWAY,
     KEPT,
     MASSES,
     MOVING,
@@ -95,49 +96,60 @@ def control_tick(arrays_: ArenaArrays, old_: FloatArray, new_: FloatArray, sub_s
     memory, contacts = known.memory.view(CONTACT_MEMORY)[..., 0], known.contacts.view(CONTACT)[..., 0]
     walls, edges = known.walls.view(WALL)[..., 0], known.edges.view(EDGE)[..., 0]
     parts, moving = known.parts.view(PART)[..., 0], known.moving.view(MOVING)[..., 0]
+    halfway = known.halfway.view(HALFWAY)[..., 0]
     shapes = Shapes(walls, edges, parts, known.solver.view(SOLVER)[0, 0])
     calls = Calls(*arrays.calls)
     functions, handles = calls.functions.view(FUNCTIONS)[0, 0], calls.handles.view(HANDLE)[..., 0]
-    robots, by_pymunk = arrays.contact.shape[1], len(handles) > 0
+    robots, by_pymunk, together = arrays.contact.shape[1], len(handles) > 0, len(halfway)
     arrays.kicked[:] = False
-    for a in range(len(states)):
-        state = states[a]
-        own: Records[Body] = bodies[a, : robots + 1]
-        arena = Arena(
-            bodies=own,
-            robots=own[:robots],
-            body=own[robots],
-            ball=state.ball,
-            air=flights[a],
-            touch=touch[a],
-            parameters=state.parameters,
-            wheels=state.wheels,
-            state=state,
-            kept=kept[a],
-            drives=drives[a],
-            kicked=arrays.kicked[a],
-            fronts=fronts,
-            walls=walls,
-        )
-        solving = Solving(masses[a], bias[a], memory[a], contacts, moving)
-        high = False
-        for step in range(sub_steps):
-            _act(arena, old[a], new[a], step, dt)
-            high = _move_ball(arena, shapes.solver, dt)
-            x, y = _put_ball(arena, high)
-            if by_pymunk:
-                store_bodies(calls.places[a], own)
-                call_step(functions.step, handles[a].space, dt)
-                load_bodies(calls.places[a], own)
-            else:
-                collide(own, shapes, solving, dt)
-            _take_ball(arena, high, x, y)
-            if len(history) > 0:
-                _note(history[step, a], arena)
-        if high and by_pymunk:
-            # Its body is still elsewhere.
-            calls.cursors[a, 0] = 0
-            call_each_body(functions.each, handles[a].space, functions.write, handles[a].batch)
+    for first in range(0, len(states), together):
+        last = min(first + together, len(states))
+        for step in range(sub_steps + 1):
+            if step > 0 and not by_pymunk:
+                solve(shapes.solver, contacts, moving, halfway[: last - first])
+            for a in range(first, last):
+                state, half = states[a], halfway[a - first]
+                own: Records[Body] = bodies[a, : robots + 1]
+                arena = Arena(
+                    bodies=own,
+                    robots=own[:robots],
+                    body=own[robots],
+                    ball=state.ball,
+                    air=flights[a],
+                    touch=touch[a],
+                    parameters=state.parameters,
+                    wheels=state.wheels,
+                    state=state,
+                    kept=kept[a],
+                    drives=drives[a],
+                    kicked=arrays.kicked[a],
+                    fronts=fronts,
+                    walls=walls,
+                )
+                solving = Solving(masses[a], bias[a], memory[a], contacts[a - first], moving[a - first])
+                if step > 0:
+                    if not by_pymunk:
+                        end_contacts(own, solving, half.contacts)
+                    _take_ball(arena, half.high == 1, half.x, half.y)
+                    if len(history) > 0:
+                        _note(history[step - 1, a], arena)
+                if step == sub_steps:
+                    continue
+                _act(arena, old[a], new[a], step, dt)
+                high = _move_ball(arena, shapes.solver, dt)
+                half.high = high
+                half.x, half.y = _put_ball(arena, high)
+                if by_pymunk:
+                    store_bodies(calls.places[a], own)
+                    call_step(functions.step, handles[a].space, dt)
+                    load_bodies(calls.places[a], own)
+                else:
+                    half.contacts = begin_contacts(own, shapes, solving, dt)
+        for a in range(first, last):
+            if halfway[a - first].high == 1 and by_pymunk:
+                # Its body is still elsewhere.
+                calls.cursors[a, 0] = 0
+                call_each_body(functions.each, handles[a].space, functions.write, handles[a].batch)
     report(arrays.states, arrays.bodies, arrays.flight, arrays.contact, arrays.robots, arrays.balls)
 
 

@@ -347,6 +347,21 @@ class Moving:
     inertia: float
 
 
+class Halfway:
+    """An arena within a physics step.
+
+    Number of contacts, and of those whose impulses may still change, the largest change in the last pass
+    [N s], whether the ball flies high (0 or 1), and where it is [m].
+    """
+
+    contacts: Index
+    unsettled: Index
+    most: float
+    high: Index
+    x: float
+    y: float
+
+
 class Rub:
     """A ball's contact with a robot's roller or jaw, for the length of a step.
 
@@ -392,6 +407,7 @@ BIAS = record_dtype(Bias)
 CONTACT_MEMORY = record_dtype(ContactMemory)
 CONTACT = record_dtype(Contact)
 MOVING = record_dtype(Moving)
+HALFWAY = record_dtype(Halfway)
 FRONT = record_dtype(Front)
 
 

@@ -26,6 +26,7 @@ from robobt.sim.records import (
     BIAS,
     CONTACT,
     CONTACT_MEMORY,
+    HALFWAY,
     MASSES,
     MOVING,
     SOLVER,
@@ -33,6 +34,7 @@ from robobt.sim.records import (
     Body,
     Contact,
     ContactMemory,
+    Halfway,
     IntArray,
     Masses,
     Moving,
@@ -42,13 +44,16 @@ from robobt.sim.records import (
     size,
 )
 from robobt.sim.settings import SimSettings
-from robobt.world.compiled import compiled_lean, compiled_merged
+from robobt.world.compiled import compiled_inline, compiled_merged
 from robobt.world.geometry import FloatArray
 
 _SETTLED_IMPULSE = 1e-12
 """The passes end when no impulse changes by more than this [N s]."""
 
 _LONG_AGO = -1e9
+
+_TOGETHER = 4
+"""Arenas whose contacts are solved together; with 2 or 8 it takes as long."""
 
 
 class ContactArrays(NamedTuple):
@@ -61,8 +66,10 @@ class ContactArrays(NamedTuple):
     masses: FloatArray  # (n, size(MASSES))
     bias: FloatArray  # (n, R + 1, size(BIAS)) of bodies, for the next step
     memory: FloatArray  # (n, pairs, size(MEMORY)) of pairs that may touch
-    contacts: FloatArray  # (pairs, size(CONTACT)) scratch
-    moving: FloatArray  # (R + 2, size(MOVING)) scratch
+    # Of the arenas that are solved together, scratch:
+    contacts: FloatArray  # (together, pairs, size(CONTACT))
+    moving: FloatArray  # (together, R + 2, size(MOVING))
+    halfway: FloatArray  # (together, size(HALFWAY))
 
     def forget(self, arenas: IntArray | int | slice) -> None:
         """Forget the contacts in these arenas, because bodies have been placed elsewhere."""
@@ -113,8 +120,9 @@ def contact_arrays(
         masses=np.zeros((n, size(MASSES))),
         bias=np.zeros((n, robots + 1, size(BIAS))),
         memory=np.zeros((n, pairs, size(CONTACT_MEMORY))),
-        contacts=np.zeros((pairs, size(CONTACT))),
-        moving=np.zeros((robots + 2, size(MOVING))),
+        contacts=np.zeros((min(n, _TOGETHER), pairs, size(CONTACT))),
+        moving=np.zeros((min(n, _TOGETHER), robots + 2, size(MOVING))),
+        halfway=np.zeros((min(n, _TOGETHER), size(HALFWAY))),
     )
     made.masses.view(MASSES)["ball"] = 1.0 / settings.ball.mass
     made.weigh(slice(None), settings.body.mass)
@@ -132,9 +140,9 @@ class Solving(NamedTuple):
     moving: Records[Moving]  # (R + 2,) scratch
 
 
-@compiled_lean
-def collide(bodies: Records[Body], shapes: Shapes, it: Solving, dt: float) -> None:
-    """Move an arena's bodies for one step and let them push each other off.
+@compiled_inline
+def begin_contacts(bodies: Records[Body], shapes: Shapes, it: Solving, dt: float) -> int:
+    """Move an arena's bodies for one step and prepare their contacts; return how many there are.
 
     Args:
         bodies: (R + 1,) robots and ball, changed.
@@ -142,8 +150,7 @@ def collide(bodies: Records[Body], shapes: Shapes, it: Solving, dt: float) -> No
         it: what belongs to the arena.
         dt: time step [s].
     """
-    clock = it.masses.clock + 1
-    it.masses.clock = clock
+    it.masses.clock += 1
     for i in range(len(bodies)):
         body, bias = bodies[i], it.bias[i]
         body.x += (body.vx + bias.vx) * dt
@@ -153,16 +160,23 @@ def collide(bodies: Records[Body], shapes: Shapes, it: Solving, dt: float) -> No
     count = find(bodies, shapes, it.contacts)
     if count > 0:
         _prepare(bodies, shapes.solver, it, count, dt)
-        _solve(shapes.solver, it.contacts, it.moving, count)
-        for i in range(len(bodies)):
-            body, bias, moving = bodies[i], it.bias[i], it.moving[i]
-            body.vx, body.vy, body.omega = moving.vx, moving.vy, moving.omega
-            bias.vx, bias.vy, bias.omega = moving.bias_vx, moving.bias_vy, moving.bias_omega
-        for j in range(count):
-            contact = it.contacts[j]
-            seen = it.memory[contact.pair]
-            seen.along, seen.across = contact.normal, contact.tangent
-            seen.when = clock
+    return count
+
+
+@compiled_inline
+def end_contacts(bodies: Records[Body], it: Solving, count: int) -> None:
+    """Let an arena's bodies have the velocities of its solved contacts, and remember their impulses."""
+    if count == 0:
+        return
+    for i in range(len(bodies)):
+        body, bias, moving = bodies[i], it.bias[i], it.moving[i]
+        body.vx, body.vy, body.omega = moving.vx, moving.vy, moving.omega
+        bias.vx, bias.vy, bias.omega = moving.bias_vx, moving.bias_vy, moving.bias_omega
+    for j in range(count):
+        contact = it.contacts[j]
+        seen = it.memory[contact.pair]
+        seen.along, seen.across = contact.normal, contact.tangent
+        seen.when = it.masses.clock
 
 
 @compiled_merged
@@ -213,38 +227,71 @@ def _push(a: Moving, b: Moving, row: Contact, along: float, across: float) -> No
     b.omega += b.inertia * (row.r2x * jy - row.r2y * jx)
 
 
-@compiled_merged
-def _solve(solver: Solver, contacts: Records[Contact], moving: Records[Moving], count: int) -> None:
-    """Improve the impulses, contact by contact, until they agree."""
+@compiled_inline
+def solve(
+    solver: Solver,
+    contacts: Records[Records[Contact]],
+    moving: Records[Records[Moving]],
+    halfway: Records[Halfway],
+) -> None:
+    """Improve the impulses of several arenas, contact by contact, until they agree.
+
+    A contact waits for the one before it, but not for those of other arenas: the processor works at several.
+
+    Args:
+        solver: its numbers.
+        contacts: (arenas, pairs) of each arena.
+        moving: (arenas, R + 2) its bodies.
+        halfway: (arenas,) how many contacts it has.
+    """
+    most_contacts = 0
+    for g in range(len(halfway)):
+        halfway[g].unsettled = halfway[g].contacts
+        most_contacts = max(most_contacts, halfway[g].contacts)
     for _ in range(int(solver.iterations)):
-        most = 0.0
-        for j in range(count):
-            row = contacts[j]
-            a, b = moving[row.one], moving[row.other]
-            nx, ny = row.nx, row.ny
-            vx = b.vx - b.omega * row.r2y - a.vx + a.omega * row.r1y
-            vy = b.vy + b.omega * row.r2x - a.vy - a.omega * row.r1x
-            press = max(row.normal - (row.back + vx * nx + vy * ny) * row.normal_mass, 0.0)
-            limit = row.friction * press
-            rub = min(max(row.tangent - (vy * nx - vx * ny) * row.tangent_mass, -limit), limit)
-            along, across = press - row.normal, rub - row.tangent
-            row.normal, row.tangent = press, rub
-            _push(a, b, row, along, across)
-            most = max(most, abs(along), abs(across))
-            # Overlaps are undone by velocities of their own, which last for a step.
-            vx = b.bias_vx - b.bias_omega * row.r2y - a.bias_vx + a.bias_omega * row.r1y
-            vy = b.bias_vy + b.bias_omega * row.r2x - a.bias_vy - a.bias_omega * row.r1x
-            lift = max(row.lift + (row.push - vx * nx - vy * ny) * row.normal_mass, 0.0)
-            along = lift - row.lift
-            row.lift = lift
-            if along != 0.0:
-                jx, jy = nx * along, ny * along
-                a.bias_vx -= jx * a.mass
-                a.bias_vy -= jy * a.mass
-                a.bias_omega -= a.inertia * (row.r1x * jy - row.r1y * jx)
-                b.bias_vx += jx * b.mass
-                b.bias_vy += jy * b.mass
-                b.bias_omega += b.inertia * (row.r2x * jy - row.r2y * jx)
-                most = max(most, abs(along))
-        if most < _SETTLED_IMPULSE:
+        if most_contacts == 0:
             return
+        for g in range(len(halfway)):
+            halfway[g].most = 0.0
+        for j in range(most_contacts):
+            for g in range(len(halfway)):
+                if j < halfway[g].unsettled:
+                    change = _improve(contacts[g][j], moving[g])
+                    halfway[g].most = max(halfway[g].most, change)
+        most_contacts = 0
+        for g in range(len(halfway)):
+            if halfway[g].most < _SETTLED_IMPULSE:
+                halfway[g].unsettled = 0
+            most_contacts = max(most_contacts, halfway[g].unsettled)
+
+
+@compiled_inline
+def _improve(row: Contact, moving: Records[Moving]) -> float:
+    """Improve a contact's impulses; return the largest change."""
+    a, b = moving[row.one], moving[row.other]
+    nx, ny = row.nx, row.ny
+    vx = b.vx - b.omega * row.r2y - a.vx + a.omega * row.r1y
+    vy = b.vy + b.omega * row.r2x - a.vy - a.omega * row.r1x
+    press = max(row.normal - (row.back + vx * nx + vy * ny) * row.normal_mass, 0.0)
+    limit = row.friction * press
+    rub = min(max(row.tangent - (vy * nx - vx * ny) * row.tangent_mass, -limit), limit)
+    along, across = press - row.normal, rub - row.tangent
+    row.normal, row.tangent = press, rub
+    _push(a, b, row, along, across)
+    most = max(abs(along), abs(across))
+    # Overlaps are undone by velocities of their own, which last for a step.
+    vx = b.bias_vx - b.bias_omega * row.r2y - a.bias_vx + a.bias_omega * row.r1y
+    vy = b.bias_vy + b.bias_omega * row.r2x - a.bias_vy - a.bias_omega * row.r1x
+    lift = max(row.lift + (row.push - vx * nx - vy * ny) * row.normal_mass, 0.0)
+    along = lift - row.lift
+    row.lift = lift
+    if along != 0.0:
+        jx, jy = nx * along, ny * along
+        a.bias_vx -= jx * a.mass
+        a.bias_vy -= jy * a.mass
+        a.bias_omega -= a.inertia * (row.r1x * jy - row.r1y * jx)
+        b.bias_vx += jx * b.mass
+        b.bias_vy += jy * b.mass
+        b.bias_omega += b.inertia * (row.r2x * jy - row.r2y * jx)
+        most = max(most, abs(along))
+    return most
