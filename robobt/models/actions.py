@@ -141,7 +141,7 @@ def commander(scaling: ActionScaling) -> Callable[[Iterable[float]], RobotComman
     """Return :func:`command_of` for one scaling, which is looked up once in place of at every action."""
     drives, kicks, dribbler = scaling.drives, scaling.kicks, scaling.dribbler
     max_speed, max_turn, kick_speed = scaling.max_speed, scaling.max_turn, scaling.kick_speed
-    turn_at = 2 if drives else 0
+    turn_at, now = 2 if drives else 0, KickTrigger.NOW
 
     def command(action: Iterable[float]) -> RobotCommand:
         entries = [
@@ -150,9 +150,11 @@ def commander(scaling: ActionScaling) -> Callable[[Iterable[float]], RobotComman
         vx = vy = 0.0
         if drives:
             x, y = entries[0], entries[1]
-            norm = max(hypot(x, y), 1.0)
+            norm = hypot(x, y)
+            if norm < 1.0:
+                norm = 1.0
             vx, vy = max_speed * x / norm, max_speed * y / norm
         kick = kick_speed if kicks and entries[-1] > 0.0 else 0.0
-        return RobotCommand(vx, vy, max_turn * entries[turn_at], kick, KickTrigger.NOW, dribbler)
+        return RobotCommand(vx, vy, max_turn * entries[turn_at], kick, now, dribbler)
 
     return command

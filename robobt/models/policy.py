@@ -185,11 +185,16 @@ class _TorchScript:
     def single(self) -> Callable[[ArrayLike], list[float]]:
         buffer = np.zeros((1, self._size), dtype=np.float32)
         tensor = self._torch.from_numpy(buffer)
-        forward, no_gradient = self._on_one_thread, self._torch.inference_mode()
+        forward, threads, no_gradient = (
+            self._forward,
+            self._torch.get_num_threads,
+            self._torch.inference_mode(),
+        )
 
         def infer(observation: ArrayLike) -> list[float]:
             buffer[0] = observation
-            return forward(tensor).tolist()[0]  # type: ignore[no-any-return]
+            answer = forward(tensor) if threads() == 1 else self._on_one_thread(tensor)
+            return answer.tolist()[0]  # type: ignore[no-any-return]
 
         def infer_without_gradient(observation: ArrayLike) -> list[float]:
             with no_gradient:

@@ -47,7 +47,7 @@ _RESTS = 0.05
 """A ball slower than this is approached where it is [m/s]."""
 
 
-@dataclass(slots=True, frozen=True)
+@dataclass(slots=True)
 class Approach:
     """What one approach has to do.
 
@@ -117,14 +117,18 @@ class GoToBall(DrivingSkill):
 
     def on_running(self) -> Status:
         """Drive one tick."""
-        me, ball = self.me, self.ball
-        limits = self.drive_limits
-        meeting = meeting_point(self.frame, me, limits)
-        facing = None if self._learned is not None else self._facing(meeting)
+        store = self.store
+        me, ball, limits, facing = store.me, store.frame.ball, self.drive_limits, None
         try:
-            self.store.command = self._decide(self.store, Approach(meeting, facing, limits, self.goalkeeper))
+            if self._learned is not None:
+                # Of an approach it needs only the limits.
+                store.command = self._learned.command(store, limits)
+            else:
+                meeting = meeting_point(store.frame, me, limits)
+                facing = self._facing(meeting)
+                store.command = self._decide(store, Approach(meeting, facing, limits, self.goalkeeper))
         except PolicyError as error:
-            self.store.command = RobotCommand()
+            store.command = RobotCommand()
             return self.fail(str(error))
         self._handed_over = has_ball(me, ball) or self._near(me, ball, facing)
         return self.succeed("at the ball") if self._handed_over else self.run("on the way to the ball")
@@ -203,14 +207,27 @@ class LearnedApproach:
 
     def __call__(self, store: Store, approach: Approach) -> RobotCommand:
         """Compute the command of one tick."""
-        command, limits = self._control.decide(store.frame, store.me, store.draw), approach.limits
+        return self.command(store, approach.limits)
+
+    def command(self, store: Store, limits: RobotLimits) -> RobotCommand:
+        """Compute the command of one tick within these limits.
+
+        Args:
+            store: the robot's store.
+            limits: how to drive.
+
+        Raises:
+            PolicyError: the policy's answer is not a valid action.
+        """
+        me, turn = store.me, limits.max_turn
+        command = self._control.decide(store.frame, me, store.draw)
         speed = hypot(command.vx, command.vy)
         fastest = min(limits.max_speed, _closing_speed(store))
         if speed > fastest:
             command.vx *= fastest / speed
             command.vy *= fastest / speed
-        command.omega = min(limits.max_turn, max(-limits.max_turn, command.omega))
-        carry(command, store.me)
+        command.omega = min(turn, max(-turn, command.omega))
+        carry(command, me)
         return command
 
 
@@ -218,9 +235,11 @@ def _closing_speed(store: Store) -> float:
     """Return the highest speed from which it can brake before contact to what its dribbler takes [m/s]."""
     frame, me = store.frame, store.me
     limits, ball = me.limits, frame.ball
-    way = hypot(ball.x - me.x, ball.y - me.y) - HANDOVER_DISTANCE - me.speed * frame.period
-    braking = _BRAKING_SHARE * min(limits.braking, limits.lateral_braking)
-    return ball.speed + sqrt(limits.catch_speed**2 + 2.0 * braking * max(0.0, way))
+    way = hypot(ball.x - me.x, ball.y - me.y) - HANDOVER_DISTANCE - hypot(me.vx, me.vy) * frame.period
+    along, across = limits.braking, limits.lateral_braking
+    braking = _BRAKING_SHARE * (across if across < along else along)
+    taken = limits.catch_speed**2 + 2.0 * braking * (way if way > 0.0 else 0.0)
+    return hypot(ball.vx, ball.vy) + sqrt(taken)
 
 
 def _reached(contact: object) -> tuple[float, float]:

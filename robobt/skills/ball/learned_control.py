@@ -63,8 +63,9 @@ _shipped: dict[Path, ModelFile] = {}
 OBSERVATION = "observation"
 """The drawing layer for observations and actions of trained policies."""
 
-_LIMIT = 1.0 + 1e-4
-"""Largest action that rounding in single precision explains."""
+_LARGEST_ACTION = 1.0 + 1e-4
+_LEAST_ACTION = -_LARGEST_ACTION
+"""Largest and least action that rounding in single precision explains."""
 
 
 class PolicyError(RobobtError, RuntimeError):
@@ -156,7 +157,7 @@ class LearnedControl:
         if sketch is not None and sketch.wants(OBSERVATION):
             self._draw(sketch, observed, action)
         for entry in action:
-            if not -_LIMIT <= entry <= _LIMIT:
+            if not _LEAST_ACTION <= entry <= _LARGEST_ACTION:
                 said = "no number" if isnan(entry) else f"{entry:.3g}, outside [-1, 1]"
                 raise PolicyError(f"the policy {self.card.name} answers {said}")
         return command(action)
