@@ -25,6 +25,7 @@ COMMANDS = {
     "engines": "engines:engines",
     "tournament": "tournament:tournament",
     "train": "train:train",
+    "ppo": "ppo:ppo",
     "degradation": "degradation:command",
     "blind_fields": "blind_fields:blind_fields",
     "delay_in_play": "delay_in_play:delay_in_play",
