@@ -39,8 +39,10 @@ _LEAST_SPAN = 1e-3
 
 
 _SIDE = {"side_acceleration": "lateral_acceleration", "side_braking": "lateral_braking"}
-_DRIVE_LIMITS = np.dtype([(_SIDE.get(name, name), np.float64) for name in DRIVE_PARAMETERS])
-"""The same, by the names of :class:`~robobt.world.records.Limits`."""
+_DRIVE_LIMITS = np.dtype(
+    [(_SIDE.get(name, name), np.float64) for name in (*DRIVE_PARAMETERS, "separate_axes")]
+)
+"""The same, by the names of :class:`~robobt.world.records.Limits`; axes always share their limits."""
 
 _VELOCITY = record_dtype(LocalVelocity)
 
@@ -84,10 +86,11 @@ def motion_after(
     count, last_sent = len(times), len(sent) - 1
     misses = np.full((count, 3), np.nan)
     # One array, which is used to the end, because records do not keep it.
-    state = np.zeros(12)
+    state = np.zeros(13 + len(p))
+    state[12:-1] = p
     robot, followed = state[:6].view(ROBOT)[0], state[6:9].view(_VELOCITY)[0]
-    stand = state[9:].view(_VELOCITY)[0]
-    limits, wanted = p.view(_DRIVE_LIMITS)[0], commands.view(_VELOCITY)[:, 0]
+    stand = state[9:12].view(_VELOCITY)[0]
+    limits, wanted = state[12:].view(_DRIVE_LIMITS)[0], commands.view(_VELOCITY)[:, 0]
     known, last, at = False, 0.0, 0
     for i in range(count):
         if known:

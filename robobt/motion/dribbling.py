@@ -112,12 +112,13 @@ def velocity_for_kick(me: RobotState, vx: float, vy: float) -> Point:
     return kept * vx + (1.0 - kept) * front_x, kept * vy + (1.0 - kept) * front_y
 
 
-def carried_into_kick(me: RobotState, ball: BallState) -> float:
+def carried_into_kick(me: RobotState, ball: BallState, commanded: float = 0.0) -> float:
     """Return what a kick adds to a ball that moves ahead with the robot, or that the robot drives into [m/s].
 
     Args:
         me: the robot.
         ball: the ball before its mouth.
+        commanded: the velocity ahead that the robot is commanded, which it may reach before it kicks [m/s].
     """
     if me.limits.carried <= 0.0:
         return 0.0
@@ -125,7 +126,7 @@ def carried_into_kick(me: RobotState, ball: BallState) -> float:
     ahead = c * ball.vx + s * ball.vy
     if ahead <= -_ROLLS_AT:
         return 0.0
-    return me.limits.carried * max(ahead, c * me.vx + s * me.vy, 0.0)
+    return me.limits.carried * max(ahead, c * me.vx + s * me.vy, commanded, 0.0)
 
 
 def sideways_after_kick(me: RobotState, ball: BallState) -> float:

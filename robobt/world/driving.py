@@ -61,6 +61,35 @@ def reached(followed: LocalVelocity, limits: Limits | RobotLimits) -> tuple[floa
 
 
 @compilable
+def _within(change: float, speed: float, faster: float, slower: float) -> float:
+    """Return the change of an axis's speed, limited by what speeds it up and what slows it down."""
+    most = slower if change * speed < 0.0 else faster
+    return max(-most, min(most, change))
+
+
+@compilable
+def _within_ellipse(
+    dx: float, dy: float, robot: Robot, c: float, s: float, limits: Limits | RobotLimits, dt: float
+) -> tuple[float, float]:
+    """Return a change of velocity, limited by an ellipse in the robot's frame: all wheels share the load."""
+    if dx * robot.vx + dy * robot.vy < 0.0:
+        along, across = limits.braking, limits.lateral_braking
+    else:
+        along, across = limits.acceleration, limits.lateral_acceleration
+    # A change within the weaker limit needs no further check.
+    weaker = along if along < across else across
+    if abs(dx) + abs(dy) > _ROUNDING_SHARE * weaker * dt:
+        step = hypot(dx, dy)
+        ahead = (c * dx + s * dy) / step
+        aside = (c * dy - s * dx) / step
+        most = dt / sqrt((ahead / along) ** 2 + (aside / across) ** 2)
+        if step > most:
+            dx *= most / step
+            dy *= most / step
+    return dx, dy
+
+
+@compilable
 def drive(robot: Robot, followed: LocalVelocity, limits: Limits | RobotLimits, dt: float) -> None:
     """Move a robot's velocity towards the one that it follows, within its limits."""
     c, s = cos(robot.heading), sin(robot.heading)
@@ -72,21 +101,19 @@ def drive(robot: Robot, followed: LocalVelocity, limits: Limits | RobotLimits, d
             target_vy *= limits.max_speed / speed
     dx = c * target_vx - s * target_vy - robot.vx
     dy = s * target_vx + c * target_vy - robot.vy
-    if dx * robot.vx + dy * robot.vy < 0.0:
-        along, across = limits.braking, limits.lateral_braking
+    if limits.separate_axes:
+        ahead = _within(
+            c * dx + s * dy, c * robot.vx + s * robot.vy, limits.acceleration * dt, limits.braking * dt
+        )
+        aside = _within(
+            c * dy - s * dx,
+            c * robot.vy - s * robot.vx,
+            limits.lateral_acceleration * dt,
+            limits.lateral_braking * dt,
+        )
+        dx, dy = c * ahead - s * aside, s * ahead + c * aside
     else:
-        along, across = limits.acceleration, limits.lateral_acceleration
-    # A change within the weaker limit needs no further check.
-    weaker = along if along < across else across
-    if abs(dx) + abs(dy) > _ROUNDING_SHARE * weaker * dt:
-        step = hypot(dx, dy)
-        ahead = (c * dx + s * dy) / step
-        aside = (c * dy - s * dx) / step
-        # The wheels' limits form an ellipse in the robot's frame.
-        most = dt / sqrt((ahead / along) ** 2 + (aside / across) ** 2)
-        if step > most:
-            dx *= most / step
-            dy *= most / step
+        dx, dy = _within_ellipse(dx, dy, robot, c, s, limits, dt)
     robot.vx += dx
     robot.vy += dy
     top = limits.max_turn

@@ -31,6 +31,11 @@ class RobotLimits(Settings):
     braking: float = Field(6.0, gt=0, le=50, description="slowing down along the heading [m/s^2]")
     side_acceleration: float | None = Field(None, gt=0, le=50, description="speeding up sideways [m/s^2]")
     side_braking: float | None = Field(None, gt=0, le=50, description="slowing down sideways [m/s^2]")
+    separate_axes: bool = Field(
+        False,
+        description="whether speeding up and braking ahead and sideways are limited independently; "
+        "by default an ellipse joins the limits",
+    )
     max_turn: float = Field(10.0, gt=0, le=100, description="top turning rate [rad/s]")
     turn_acceleration: float = Field(50.0, gt=0, le=5000, description="change of the turning rate [rad/s^2]")
     turn_braking: float | None = Field(None, gt=0, le=5000, description="slowing a turn down [rad/s^2]")

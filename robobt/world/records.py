@@ -57,6 +57,7 @@ class Limits(Protocol):
     lateral_acceleration: float
     braking: float
     lateral_braking: float
+    separate_axes: float
     max_turn: float
     turn_acceleration: float
     angular_braking: float

@@ -34,6 +34,55 @@ def test_a_preset_speeds_up_and_brakes_as_measured(name: str) -> None:
     assert world.time - start - late == pytest.approx(brake, rel=0.10)
 
 
+# Commands of 60 ms each on all axes at once, and where a robot of ER-Force's simulator then was: time [s],
+# place from the start [m] and heading [rad].
+UNSTEADY = (
+    (-0.45, 0.31, -0.73),
+    (1.74, -0.29, -1.11),
+    (-0.68, 1.38, -1.01),
+    (1.93, -1.54, -2.44),
+    (0.04, 1.04, -1.66),
+    (1.59, -0.71, -3.28),
+    (1.69, -1.23, -1.35),
+    (0.63, 1.10, -1.68),
+    (2.03, -2.21, -0.67),
+    (1.09, -1.76, -0.47),
+    (2.19, 0.99, -0.50),
+    (1.29, -2.37, -0.96),
+)
+WENT = {0.30: (-0.051, 0.027, -0.377), 0.60: (0.069, -0.142, -0.834), 0.72: (0.142, -0.281, -0.914)}
+
+
+def test_robots_of_erforce_follow_each_axis_by_itself_as_measured() -> None:
+    world = one_robot("erforce", pose=(0, 0, 0), period=0.03)
+    for k in range(24):
+        vx, vy, omega = UNSTEADY[k // 2]
+        world.act({ME: RobotCommand(vx, vy, omega)})
+        expected = WENT.get(round(world.time, 2))
+        if expected is not None:
+            me = world.truth().own[0]
+            x, y, heading = expected
+            # With limits that share an ellipse it is 6, 15 and 19 cm off.
+            assert hypot(me.x - x, me.y - y) < 0.03
+            assert me.heading == pytest.approx(heading, abs=0.06)
+
+
+def test_axes_with_limits_of_their_own_do_not_wait_for_each_other() -> None:
+    limits = RobotLimits(
+        acceleration=3, braking=6, side_acceleration=2, side_braking=4, max_speed=9, separate_axes=True
+    )
+    world = one_robot(limits=limits, period=0.02)
+    for _ in range(10):
+        world.act({ME: RobotCommand(vx=5.0, vy=5.0)})
+    me = world.truth().own[0]
+    assert (me.vx, me.vy) == pytest.approx((0.6, 0.4))
+    # One brakes while the other speeds up.
+    for _ in range(5):
+        world.act({ME: RobotCommand(vx=-5.0, vy=5.0)})
+    me = world.truth().own[0]
+    assert (me.vx, me.vy) == pytest.approx((0.0, 0.6))
+
+
 @settings(max_examples=30)
 @given(
     vx=st.floats(-10, 10),

@@ -118,7 +118,7 @@ def test_what_is_expected_before_a_delay_is_measured_is_what_is_known(name: str)
     places = []
     for predict in (True, "measured"):
         with MatchLoop(scenario.model_copy(update={**changes, "predict": predict}), 1, sim_world) as match:
-            for _ in range(20):
+            for _ in range(10):
                 match.tick()
             robots = match.world.observe().robots()
             places.append([(it.x, it.y, it.heading, it.vx, it.vy) for it in robots.values()])

@@ -258,7 +258,9 @@ class KickToTarget(DrivingSkill):
         if off > order.tolerance and not touched:
             return False
         # A ball that rolls towards the robot, or moves ahead with it, may leave faster than the kick alone.
-        added = me.limits.touch_returned * max(-ahead, 0.0) + carried_into_kick(me, ball)
+        added = me.limits.touch_returned * max(-ahead, 0.0) + carried_into_kick(
+            me, ball, self.store.command.vx
+        )
         self.store.command.kick_speed = max(LEAST_KICK, order.speed - added)
         self.store.command.kick_angle = order.angle
         self.store.command.kick_trigger = KickTrigger.ON_CONTACT
