@@ -116,6 +116,35 @@ def run(unpacked: Path, where: Path, code: str) -> str:
     return done.stdout
 
 
+ASKED = {
+    "place": "import robobt; print(robobt.__file__)",
+    "commit": "from robobt.config.commit import source_commit; print(source_commit())",
+    "load": "from robobt import RobobtError, load_policy\n"
+    "try: load_policy('save_ppo')\n"
+    "except RobobtError as error: print(error)",
+    "models": "app(['list', 'models', '--json'])",
+    "left out": "app(['show', 'save_ppo'], standalone_mode=False)",
+    "scenarios": "app(['list', 'scenarios', '--json'])",
+    "model": "app(['show', 'duel_ppo', '--json'])",
+}
+"""What is asked outside the checkout, in one process, which starts sooner than seven."""
+
+
+@pytest.fixture(scope="module")
+def said(unpacked: Path, tmp_path_factory: pytest.TempPathFactory) -> dict[str, str]:
+    """What is answered."""
+    code = (
+        "import sys\nsys.stderr = sys.stdout\nfrom robobt.cli import app\n"
+        f"for code in {[*ASKED.values()]!r}:\n"
+        "    try: exec(code)\n"
+        "    except SystemExit as end: assert not end.code, (code, end.code)\n"
+        "    print('\\0', end='')"
+    )
+    *answers, rest = run(unpacked, tmp_path_factory.mktemp("outside"), code).split("\0")
+    assert rest == ""
+    return dict(zip(ASKED, answers, strict=True))
+
+
 @pytest.mark.integration
 def test_it_carries_types_scenarios_and_models(unpacked: Path) -> None:
     assert (unpacked / "robobt" / "py.typed").exists()
@@ -134,23 +163,17 @@ def test_it_leaves_out_no_model_that_the_package_or_the_readme_names() -> None:
 
 
 @pytest.mark.integration
-def test_it_says_where_a_model_is_that_it_leaves_out(unpacked: Path, tmp_path: Path) -> None:
+def test_it_says_where_a_model_is_that_it_leaves_out(unpacked: Path, said: dict[str, str]) -> None:
     models = {path.name for path in (unpacked / "robobt" / "_data" / "models").glob("*.pt")}
     assert models == {path.name for path in ROOT.glob("models/*.pt")} - LEFT_OUT
-    load = "from robobt import RobobtError, load_policy\ntry: load_policy('save_ppo')\n"
-    said = run(unpacked, tmp_path, load + "except RobobtError as error: print(error)")
-    assert "'save_ppo' is not installed: it is in the folder models of robobt's repository" in said
-    listed = run(unpacked, tmp_path, "from robobt.cli import app; app(['list', 'models', '--json'])")
-    assert json.loads(listed)["problems"] == []
-    show = "import sys\nsys.stderr = sys.stdout\nfrom robobt.cli import app\n"
-    shown = run(unpacked, tmp_path, show + "app(['show', 'save_ppo'], standalone_mode=False)")
-    assert shown == f"robobt: {said}"
+    assert "'save_ppo' is not installed: it is in the folder models of robobt's repository" in said["load"]
+    assert json.loads(said["models"])["problems"] == []
+    assert said["left out"] == f"robobt: {said['load']}"
 
 
 @pytest.mark.integration
-def test_it_knows_its_commit(unpacked: Path, tmp_path: Path) -> None:
-    found = run(unpacked, tmp_path, "from robobt.config.commit import source_commit; print(source_commit())")
-    assert found.strip() == commit_of(ROOT / "robobt")
+def test_it_knows_its_commit(said: dict[str, str]) -> None:
+    assert said["commit"].strip() == commit_of(ROOT / "robobt")
 
 
 OWN_TEST = """
@@ -177,11 +200,8 @@ def test_pytest_finds_its_fixtures_without_being_told(unpacked: Path, tmp_path: 
 
 
 @pytest.mark.integration
-def test_it_finds_its_scenarios_and_models_outside_the_checkout(unpacked: Path, tmp_path: Path) -> None:
+def test_it_finds_its_scenarios_and_models_outside_the_checkout(unpacked: Path, said: dict[str, str]) -> None:
     # It plays there in the slow test above: what is installed anew is compiled anew.
-    found = run(unpacked, tmp_path, "import robobt; print(robobt.__file__)")
-    assert found.startswith(str(unpacked))
-    names = run(unpacked, tmp_path, "from robobt.cli import app; app(['list', 'scenarios', '--json'])")
-    assert "striker_vs_goalkeeper" in names
-    told = run(unpacked, tmp_path, "from robobt.cli import app; app(['show', 'duel_ppo', '--json'])")
-    assert json.loads(told)["models"][0]["file"].startswith(str(unpacked))
+    assert said["place"].startswith(str(unpacked))
+    assert "striker_vs_goalkeeper" in said["scenarios"]
+    assert json.loads(said["model"])["models"][0]["file"].startswith(str(unpacked))

@@ -173,16 +173,17 @@ def _at(
         decisions = decisions_of(logged.recording.frame(tick), holder)
     # In a league log nobody knows what the teams play, so "nothing changed" follows the log.
     others = [side for side in Team if side not in (changed or [ours])]
-    other: Branches | None = None
+    other = how.branches(logged, plays) if changed else None
+    if other is not None:
+        # Before the first branch is played: its play may be unknown.
+        other.begin(tick)
     follow = others if logged.known else list(Team)
     with Progress("branches", trials * (1 + len(decisions) + bool(changed))) as progress:
         unchanged, found = compare_decisions(
             branches, decisions, ours, trials, how.seed, follow, progress.advance
         )
-        if changed:
+        if other is not None:
             name = ", ".join([text for text in (plays.blue, plays.yellow) if text])
-            other = how.branches(logged, plays)
-            other.begin(tick)
             with_them = []
             for trial in range(trials):
                 with_them.append(other.play(how.seed, trial, follow=others))

@@ -143,7 +143,7 @@ def test_a_match_that_waits_shows_its_start_and_what_is_moved() -> None:
 def test_what_is_moved_in_a_pause_moves_nothing_else() -> None:
     with playing("striker_vs_goalkeeper", paused=True) as session, Client(session.server.url) as client:
         client.ask(do="step", ticks=30)
-        stream = session.server.audience.stream
+        stream = soon(lambda: session.server.audience.stream)
         assert stream is not None
         end = 29 * session.match.scenario.period
         client.read(lambda it: it.chunks and numbers(it.chunks[-1]["times"], "<f4")[-1] > end - 1e-3)

@@ -24,7 +24,12 @@ def shoot_out() -> tuple[MatchResult, list[str]]:
             return decision
 
         match.referee.update = told  # type: ignore[union-attr, method-assign]
-        return match.play(), happened
+        # For a second after the second kick.
+        left = 1.0
+        while match.tick() and left > 0.0:
+            kicks = [kind for kind in happened if kind in ("goal", "penalty_kick_failed")]
+            left -= match.scenario.period * (len(kicks) >= 2)
+        return match.result(), happened
 
 
 def test_both_teams_take_their_kicks_without_a_fault(shoot_out: tuple[MatchResult, list[str]]) -> None:

@@ -100,13 +100,47 @@ def test_a_status_comes_with_what_the_node_said_that_decided(tick_on: Ticker) ->
     assert found.said == ["HasBall", "HasBall: it does not have the ball"]
 
 
-def pytest_in(folder: Path, *options: str) -> str:
-    """What pytest says in a folder, told of the plugin by the name that the entry point has."""
-    command = [sys.executable, "-m", "pytest", "-q", "-p", "robobt.testing.plugin", *options]
-    # Without those of all other packages, which take half a second to import.
+IN_FOLDERS = """
+import os, pytest, sys
+for folder in sys.argv[1:]:
+    os.chdir(folder)
+    # The plugin by the name that the entry point has.
+    pytest.main(["-q", "-p", "robobt.testing.plugin"])
+    print(end=chr(0))
+    for name, module in list(sys.modules.items()):
+        if (getattr(module, "__file__", None) or "").startswith(folder):
+            del sys.modules[name]
+    sys.path.remove(folder)
+"""
+
+
+@pytest.fixture(scope="module")
+def said(tmp_path_factory: pytest.TempPathFactory) -> dict[str, str]:
+    """What pytest says of tests of three skills, of which two have one name, in two processes."""
+    page = (ROOT / "docs" / "testing.md").read_text()
+    skill, test = [block.partition("```")[0] for block in page.split("```python\n")[1:3]]
+    files = {
+        "reason": {"test_it.py": CARRIES},
+        "right": {"circle_ball.py": skill, "test_circle_ball.py": test},
+        "wrong": {
+            "circle_ball.py": skill.replace("radius: float = 0.6", "radius: float = 0.05"),
+            "test_circle_ball.py": test,
+        },
+    }
+    folders = [tmp_path_factory.mktemp(name) for name in files]
+    for folder, texts in zip(folders, files.values(), strict=True):
+        for file, text in texts.items():
+            (folder / file).write_text(text)
+    # Without the plugins of all other packages, which take half a second to import.
     environment = dict(os.environ, PYTEST_DISABLE_PLUGIN_AUTOLOAD="1")
-    done = subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True, check=False)
-    return done.stdout + done.stderr
+    reports: list[str] = []
+    for part in (folders[:2], folders[2:]):
+        command = [sys.executable, "-c", IN_FOLDERS, *map(str, part)]
+        done = subprocess.run(command, env=environment, capture_output=True, text=True, check=False)
+        *told, rest = done.stdout.split("\0")
+        assert rest == "", done.stderr
+        reports += told
+    return dict(zip(files, reports, strict=True))
 
 
 def test_the_entry_point_has_the_name_that_keeps_it_from_being_loaded_twice() -> None:
@@ -127,23 +161,24 @@ def test_the_plugin_imports_nothing_heavy() -> None:
     assert done.stdout == "set()\n"
 
 
+CARRIES = """
+from robobt import Skill, Status
+from robobt.testing import frame, held, robot
+class Carry(Skill):
+    def on_running(self):
+        return self.run('carries it') if self.me.ball_contact else self.fail('lost the ball')
+def test_it(tick_on):
+    near, held_by = robot(), robot(contact=True)
+    frames = [frame(held_by, held(held_by)), frame(near, held(near))]
+    assert tick_on(Carry(), frames) == [Status.RUNNING, Status.RUNNING]
+"""
+
+
 @pytest.mark.integration
-def test_a_wrong_status_is_reported_with_the_reason_of_the_skill(tmp_path: Path) -> None:
-    (tmp_path / "test_it.py").write_text(
-        "from robobt import Skill, Status\n"
-        "from robobt.testing import frame, held, robot\n"
-        "class Carry(Skill):\n"
-        "    def on_running(self):\n"
-        "        return self.run('carries it') if self.me.ball_contact else self.fail('lost the ball')\n"
-        "def test_it(tick_on):\n"
-        "    near, held_by = robot(), robot(contact=True)\n"
-        "    frames = [frame(held_by, held(held_by)), frame(near, held(near))]\n"
-        "    assert tick_on(Carry(), frames) == [Status.RUNNING, Status.RUNNING]\n"
-    )
-    said = pytest_in(tmp_path)
-    assert "E       assert [RUNNING, FAILURE] == [RUNNING, RUNNING]" in said
-    assert "E         tick 1: FAILURE (Carry: lost the ball), not RUNNING" in said
-    assert "tick 0" not in said
+def test_a_wrong_status_is_reported_with_the_reason_of_the_skill(said: dict[str, str]) -> None:
+    assert "E       assert [RUNNING, FAILURE] == [RUNNING, RUNNING]" in said["reason"]
+    assert "E         tick 1: FAILURE (Carry: lost the ball), not RUNNING" in said["reason"]
+    assert "tick 0" not in said["reason"]
 
 
 def test_statuses_beside_something_else_are_left_to_pytest() -> None:
@@ -151,20 +186,11 @@ def test_statuses_beside_something_else_are_left_to_pytest() -> None:
 
 
 @pytest.mark.integration
-def test_the_example_of_the_page_is_a_test_that_passes(tmp_path: Path) -> None:
-    page = (ROOT / "docs" / "testing.md").read_text()
-    (skill, test) = page.split("```python\n")[1:3]
-    for name, block in (("circle_ball.py", skill), ("test_circle_ball.py", test)):
-        (tmp_path / name).write_text(block.partition("```")[0])
-    assert "5 passed" in pytest_in(tmp_path)
+def test_the_example_of_the_page_is_a_test_that_passes(said: dict[str, str]) -> None:
+    assert "5 passed" in said["right"]
 
 
 @pytest.mark.integration
-def test_the_example_of_the_page_fails_when_the_skill_is_wrong(tmp_path: Path) -> None:
-    page = (ROOT / "docs" / "testing.md").read_text()
-    (skill, test) = [block.partition("```")[0] for block in page.split("```python\n")[1:3]]
-    (tmp_path / "circle_ball.py").write_text(skill.replace("radius: float = 0.6", "radius: float = 0.05"))
-    (tmp_path / "test_circle_ball.py").write_text(test)
-    said = pytest_in(tmp_path)
-    assert "not always: not: it touches the ball" in said
-    assert "trial.py" not in said, "the failure is shown in the test, not inside of robobt"
+def test_the_example_of_the_page_fails_when_the_skill_is_wrong(said: dict[str, str]) -> None:
+    assert "not always: not: it touches the ball" in said["wrong"]
+    assert "trial.py" not in said["wrong"], "the failure is shown in the test, not inside of robobt"

@@ -122,7 +122,8 @@ def test_every_play_that_ships_can_be_saved_and_read_back_whatever_its_parameter
         text = tree_yaml(root, play)
         again = build(text)
         assert tree_differences(root, again, VOCABULARY) == [], parameters
-        assert write_yaml(describe_tree(again, VOCABULARY, play)) == text
+        # What they are written from, which tells 1 from 1.0 as the text does.
+        assert repr(describe_tree(again, VOCABULARY, play)) == repr(describe_tree(root, VOCABULARY, play))
     assert built >= len(parameters_of(builder))
 
 
