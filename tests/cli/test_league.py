@@ -13,14 +13,14 @@ import pytest
 from typer.testing import CliRunner
 
 from robobt.cli import app
-from robobt.league.log.files import LogKind, read_log
+from robobt.league.log.files import LogKind, LogRecord, read_log
 from robobt.league.wire.messages import Referee, SimulationSyncRequest
 from robobt.league.wire.packets import PacketCounts
 from robobt.league.wire.sockets import Receiver
 from robobt.league.wire.stream import MessageStream
 from robobt.league.wire.vision import read_vision
 from tests.league.served import free_endpoints
-from tests.waiting import LIMIT
+from tests.waiting import LIMIT, soon
 
 ANY_PORT = [f"--{name}-port=0" for name in ("grsim", "control", "blue", "yellow")]
 
@@ -75,21 +75,26 @@ def test_serve_says_what_it_served_and_logs_it(tmp_path: Path) -> None:
 @pytest.mark.integration
 @pytest.mark.parametrize("clock", ["sim", "unix"])
 def test_serve_stamps_its_vision_by_the_clock_that_is_asked_for(tmp_path: Path, clock: str) -> None:
-    log = tmp_path / "game.log"
     before = time.time()
-    robobt(
-        "serve", "--robots", 1, *quiet(), "--seconds", 0.3, "--clock", clock, "--referee", "own", "--log", log
-    )
+
+    def served() -> list[LogRecord]:
+        """What is sent in a moment; a busy machine may not get round to send everything."""
+        log = tmp_path / f"{time.time_ns()}.log"
+        sent = ["--clock", clock, "--referee", "own", "--log", log]
+        robobt("serve", "--robots", 1, *quiet(), "--seconds", 0.3, *sent)
+        found = list(read_log(log))
+        return found if len({record.kind for record in found}) == 3 else []
+
+    records = soon(served)
     start = before if clock == "unix" else 0.0
-    records = list(read_log(log))
     for record in records:
         # Logs and referees always have Unix time.
-        assert before <= record.time / 1e9 < before + 60
+        assert before <= record.time / 1e9 < before + 2.0 * LIMIT
         seen = read_vision(record.data, PacketCounts()) if record.kind == LogKind.VISION else None
         if seen is not None and seen.frame is not None:
-            assert start < seen.frame.captured < start + 60
+            assert start < seen.frame.captured < start + 2.0 * LIMIT
         if record.kind == LogKind.REFEREE:
-            assert before < Referee.FromString(record.data).packet_timestamp / 1e6 < before + 60
+            assert before < Referee.FromString(record.data).packet_timestamp / 1e6 < before + 2.0 * LIMIT
     assert {record.kind for record in records} == {3, 4, 5}
 
 
@@ -99,7 +104,7 @@ def test_serve_takes_a_scenario() -> None:
 
 def test_serve_takes_a_field_and_shares_it_among_cameras(tmp_path: Path) -> None:
     log = tmp_path / "large.log"
-    given = ("--robots", 11, "--field", "division_a", "--cameras", 4, "--seconds", 0.2)
+    given = ("--robots", 11, "--field", "division_a", "--cameras", 4, "--seconds", 0.5)
     assert "Serving 22 robots" in robobt("serve", *given, *quiet(), "--log", log)
     seen = [
         read_vision(record.data, PacketCounts()) for record in read_log(log) if record.kind == LogKind.VISION

@@ -61,7 +61,7 @@ def test_a_width_of_nothing_prints_what_80_columns_print(arguments: list[str]) -
             env={**os.environ, "COLUMNS": width},
             stdout=subprocess.PIPE,
             check=True,
-            timeout=60,
+            timeout=LIMIT,
         ).stdout
         for width in ("0", "80")
     ]

@@ -29,6 +29,7 @@ from robobt.world.protocol import Placement
 from robobt.world.state import Frame, RobotId
 from robobt.worlds import world_from
 from tests.league.served import drive, free_endpoints, poses, served
+from tests.waiting import soon
 
 pytestmark = pytest.mark.integration
 
@@ -297,7 +298,12 @@ def test_where_nothing_may_be_placed_nothing_is_moved() -> None:
 def test_where_nothing_may_be_placed_it_waits_for_the_robots(caplog: pytest.LogCaptureFixture) -> None:
     endpoints = free_endpoints()
     with served(field(1), endpoints, SPEED) as server, connect(endpoints, place=False) as world:
-        late = threading.Timer(2.0, lambda: server.field.teleport(Teleport(HER, 2.0, -1.0, 0.0)))
+
+        def come_late() -> None:
+            soon(lambda: any("waiting until" in text for text in caplog.messages))
+            server.field.teleport(Teleport(HER, 2.0, -1.0, 0.0))
+
+        late = threading.Thread(target=come_late)
         late.start()
         world.reset(START, 0)
         late.join()

@@ -61,7 +61,7 @@ def test_files_of_the_page_are_served_and_no_others(session: Session) -> None:
 def ask(session: Session, *pieces: bytes) -> bytes:
     """Send bytes as they are, a piece at a time, and return all that comes back."""
     host, _, port = session.server.url.split("/")[2].partition(":")
-    with socket.create_connection((host, int(port)), timeout=10) as connection:
+    with socket.create_connection((host, int(port)), timeout=LIMIT) as connection:
         connection.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
         for piece in pieces:
             connection.sendall(piece)

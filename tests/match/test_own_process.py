@@ -114,7 +114,7 @@ def forks(child: Callable[[], object]) -> None:
 def by_multiprocessing() -> None:
     process = multiprocessing.get_context("fork").Process(target=print)
     process.start()
-    process.join(30)
+    process.join()
     ENDED.append(-1 if process.exitcode is None else process.exitcode)
 
 

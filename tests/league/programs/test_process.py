@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 
 from robobt.league.programs.process import KEPT_OUTPUT, TeamProcess
-from tests.waiting import soon
+from tests.waiting import LIMIT, soon
 
 pytestmark = [
     pytest.mark.integration,
@@ -46,6 +46,12 @@ def harmful(harm: str) -> str:
     )
 
 
+@pytest.fixture(autouse=True)
+def _killed_processes_may_disappear_slowly(monkeypatch: pytest.MonkeyPatch) -> None:
+    """On a busy machine the kernel takes a while to end them; no test waits for one that stays."""
+    monkeypatch.setattr("robobt.league.programs.process._KILL_TIMEOUT", LIMIT)
+
+
 def wait_for_words(path: Path) -> str:
     soon(lambda: path.exists() and path.read_text().endswith("\n"), "it says something")
     return path.read_text()
@@ -76,7 +82,7 @@ def test_who_does_not_end_when_told_is_stubborn(deaf: bool, tmp_path: Path) -> N
     with TeamProcess([sys.executable, "-S", "-c", child], tmp_path, output) as program:
         wait_for_words(output)
         program.tell()
-        program.leave(1.0 if deaf else 20.0)
+        program.leave(1.0 if deaf else LIMIT)
         assert program.stubborn is deaf
 
 
@@ -139,8 +145,8 @@ def test_how_it_ended_is_told_with_its_last_words(tmp_path: Path) -> None:
     ends["import os; os.kill(os.getpid(), 9)"] = "was ended by signal 9"
     for code, told in ends.items():
         with TeamProcess([sys.executable, "-S", "-c", code], tmp_path, tmp_path / "out.txt") as program:
-            soon(program.ended)
-            assert program.ended() == f"its program {told}"
+            # Its last words may come after its end.
+            soon(lambda program=program, told=told: program.ended() == f"its program {told}")
 
 
 def test_only_the_beginning_of_its_output_is_kept(tmp_path: Path) -> None:
@@ -148,6 +154,7 @@ def test_only_the_beginning_of_its_output_is_kept(tmp_path: Path) -> None:
     shout = "import os\nfor _ in range(200): os.write(1, b'x' * (1 << 20))\n"
     with TeamProcess([sys.executable, "-S", "-c", shout], tmp_path, output) as program:
         soon(program.ended)
+        soon(lambda: program.printed == 200 << 20)
     assert output.stat().st_size == KEPT_OUTPUT
     assert program.printed == 200 << 20
 
