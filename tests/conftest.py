@@ -55,6 +55,8 @@ gc.disable()
 def pytest_collection_finish() -> None:
     """Look for garbage from now on, but only among what tests make."""
     gc.freeze()
+    # Seldom: most tests make no garbage that refers to itself.
+    gc.set_threshold(20_000, 10, 10)
     gc.enable()
     gc.freeze = gc.unfreeze = lambda: None
     # pytest puts its handlers on the root and on each logger that tells it nothing, as torch's fifty do, six

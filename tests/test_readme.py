@@ -51,7 +51,7 @@ def test_the_robobt_commands_run_one_after_the_other(tmp_path: Path, monkeypatch
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(os, "sched_getaffinity", lambda _: {0}, raising=False)
     monkeypatch.setattr(
-        "robobt.match.load_scenario", lambda source, **how: load_scenario(source, **how).lasting(10.0)
+        "robobt.match.load_scenario", lambda source, **how: load_scenario(source, **how).lasting(4.0)
     )
     fewer = [option for name in ("starts", "held_out") for option in ("--set", f"evaluation.{name}=20")]
     for command in commands(TOUR):

@@ -90,7 +90,7 @@ def test_equal_values_leave_room_for_what_was_not_seen() -> None:
 
 def test_a_real_search_repeats(logged: LoggedMatch) -> None:
     branches = Branches(logged, seconds=0.3)
-    options = {"every": 2.0, "count": 1, "trials": 2, "first": 1}
+    options = {"every": 2.0, "count": 1, "trials": 2, "first": 1, "end": 2.5}
     first = searched(branches, 1, **options)
     assert first == searched(branches, 1, **options)
     assert first[0].changed.trials == 2

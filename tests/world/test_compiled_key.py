@@ -14,7 +14,6 @@ import numpy as np
 import pytest
 
 from robobt.world.compiled_key import _Index, key_of
-from tests.conftest import StartPython
 from tests.waiting import LIMIT
 
 INNER = """
@@ -39,9 +38,11 @@ FORKING = """
 import os, runpy, sys
 import robobt.world.compiled
 sys.path.insert(0, "")
-for script in sys.stdin:
+for line in sys.stdin:
     if os.fork() == 0:
-        runpy.run_path(script.strip(), run_name="__main__")
+        folder, script = line.strip().split("\\t")
+        os.chdir(folder)
+        runpy.run_path(script, run_name="__main__")
         sys.stdout.flush()
         os._exit(0)
     assert os.wait()[1] == 0
@@ -51,22 +52,29 @@ for script in sys.stdin:
 Run = Callable[[str], list[str]]
 
 
+@pytest.fixture(scope="module")
+def forking() -> Iterator[subprocess.Popen[str]]:
+    command = [sys.executable, "-B", "-c", FORKING]
+    with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True) as process:
+        assert process.stdin is not None
+        yield process
+        process.stdin.close()
+        assert process.wait(LIMIT) == 0
+
+
 @pytest.fixture
-def run(start_python: StartPython, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Run]:
+def run(forking: subprocess.Popen[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Run:
     """Run a script of the test's folder and return the words of the line that it prints."""
     monkeypatch.chdir(tmp_path)
-    process = start_python("-B", "-c", FORKING, stdin=subprocess.PIPE)
-    assert process.stdin is not None
-    assert process.stdout is not None
-    scripts, printed = process.stdin, process.stdout
+    assert forking.stdin is not None
+    assert forking.stdout is not None
+    scripts, printed = forking.stdin, forking.stdout
 
     def run(script: str) -> list[str]:
-        print(script, file=scripts, flush=True)
+        print(tmp_path, script, sep="\t", file=scripts, flush=True)
         return printed.readline().split()
 
-    yield run
-    scripts.close()
-    assert process.wait(LIMIT) == 0
+    return run
 
 
 def answer(run: Run, factor: float, added: float) -> list[str]:
