@@ -62,12 +62,15 @@ def test_keys_drive_the_robot_and_letting_go_stops_it(driven: Page, session: Ses
 
 
 def test_a_key_is_sent_at_once(driven: Page, session: Session) -> None:
-    for key in "wasd" * 3:
-        ActionChains(driven.driver).key_down(key).key_up(key).perform()
-    delays = sorted(driven.js("return window.robobt.measured.delays"))
-    assert len(delays) == 12
-    # A busy machine delays some of them, a page that waits for its next beat most.
-    assert delays[len(delays) // 4] < 50.0
+    def measured(times: int) -> list[float]:
+        for key in "wasd" * 3:
+            ActionChains(driven.driver).key_down(key).key_up(key).perform()
+        delays = driven.js("return window.robobt.measured.delays")
+        assert len(delays) == 12 * times
+        return sorted(delays[-12:])
+
+    # A busy machine delays some of them, or most for a while; a page that waits for its next beat always most.
+    assert any(measured(times)[3] < 50.0 for times in range(1, 6))
 
 
 def test_a_page_that_stalls_stops_its_robot(driven: Page, session: Session) -> None:
