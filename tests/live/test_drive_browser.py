@@ -69,7 +69,7 @@ def test_a_key_is_sent_at_once(driven: Page, session: Session) -> None:
         assert len(delays) == 12 * times
         return sorted(delays[-12:])
 
-    # A busy machine delays some of them, or most for a while; a page that waits for its next beat always most.
+    # A busy machine delays some of them, or most for a while; a page that waits for its beat always most.
     assert any(measured(times)[3] < 50.0 for times in range(1, 6))
 
 
