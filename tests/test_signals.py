@@ -116,8 +116,9 @@ def test_one_that_comes_while_something_is_deleted_prints_nothing_and_is_raised(
     assert capfd.readouterr().err == ""
 
 
-def test_signals_that_come_together_are_one() -> None:
+def test_signals_that_come_together_are_one(monkeypatch: pytest.MonkeyPatch) -> None:
     """As a service manager sends SIGTERM and SIGHUP: the second must not break the way out."""
+    monkeypatch.setattr(signals, "_SAME_END_TIME", LIMIT)
     done = []
 
     def block() -> None:
