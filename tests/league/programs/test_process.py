@@ -47,9 +47,11 @@ def harmful(harm: str) -> str:
 
 
 @pytest.fixture(autouse=True)
-def _killed_processes_may_disappear_slowly(monkeypatch: pytest.MonkeyPatch) -> None:
-    """On a busy machine the kernel takes a while to end them; no test waits for one that stays."""
+def _waits_as_long_as_needed(monkeypatch: pytest.MonkeyPatch) -> None:
+    # On a busy machine the kernel takes a while to end processes; no test waits for one that stays.
     monkeypatch.setattr("robobt.league.programs.process._KILL_TIMEOUT", LIMIT)
+    # And the guard holds the output of its program until it ends itself, so that its end is never seen.
+    monkeypatch.setattr("robobt.league.programs.process._LAST_WORDS_TIMEOUT", 0.05)
 
 
 def wait_for_words(path: Path) -> str:
@@ -82,7 +84,7 @@ def test_who_does_not_end_when_told_is_stubborn(deaf: bool, tmp_path: Path) -> N
     with TeamProcess([sys.executable, "-S", "-c", child], tmp_path, output) as program:
         wait_for_words(output)
         program.tell()
-        program.leave(1.0 if deaf else LIMIT)
+        program.leave(0.3 if deaf else LIMIT)
         assert program.stubborn is deaf
 
 
@@ -98,7 +100,7 @@ def test_who_does_not_end_when_told_is_stubborn(deaf: bool, tmp_path: Path) -> N
 def test_a_program_is_ended_whatever_it_does_to_its_guard(
     harm: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("robobt.league.programs.process._CLEANUP_TIMEOUT", 1.0)
+    monkeypatch.setattr("robobt.league.programs.process._CLEANUP_TIMEOUT", 0.2)
     output = tmp_path / "out.txt"
     with TeamProcess([sys.executable, "-S", "-c", harmful(harm)], tmp_path, output):
         child = int(wait_for_words(output))
@@ -113,9 +115,9 @@ def test_closing_waits_until_what_it_killed_is_gone(tmp_path: Path, monkeypatch:
             with suppress(OSError):
                 kill(process, number)
 
-        threading.Timer(1.0, kill_now).start()
+        threading.Timer(0.5, kill_now).start()
 
-    monkeypatch.setattr("robobt.league.programs.process._CLEANUP_TIMEOUT", 0.5)
+    monkeypatch.setattr("robobt.league.programs.process._CLEANUP_TIMEOUT", 0.2)
     monkeypatch.setattr(os, "kill", kill_later)
     output = tmp_path / "out.txt"
     code = harmful(f"{STOPS_ITS_GUARD}; os.setsid(); {TELLS}")
