@@ -98,6 +98,7 @@ class PPO(Learner):
         self.critic = Value([*scale, *state_scale], hidden, generator, groups)
         self._observed, self._in_ball_frame = len(scale), bool(vectors)
         self._continuous = torch.tensor(list(continuous))
+        self._normal, self._thresholds = _columns(continuous), _columns([not each for each in continuous])
         self._gamma = settings.gamma
         self._log_std = nn.Parameter(torch.full((sum(continuous),), float(np.log(settings.init_std))))
         # The initial policy prefers no direction and rarely kicks.
@@ -116,9 +117,9 @@ class PPO(Learner):
         noise = torch.from_numpy(rng.standard_normal((len(seen), len(self._log_std)), np.float32))
         uniform = torch.from_numpy(rng.random((len(seen), int((~self._continuous).sum())), np.float32))
         action = torch.empty_like(output)
-        action[:, self._continuous] = output[:, self._continuous] + self._log_std.exp() * noise
-        kicks = uniform < torch.sigmoid(output[:, ~self._continuous])
-        action[:, ~self._continuous] = torch.where(kicks, 1.0, -1.0)
+        action[:, self._normal] = output[:, self._normal] + self._log_std.exp() * noise
+        kicks = uniform < torch.sigmoid(output[:, self._thresholds])
+        action[:, self._thresholds] = torch.where(kicks, 1.0, -1.0)
         log_probability, _ = self._evaluate_actions(output, action)
         return (_to_numpy(action), _to_numpy(log_probability), _to_numpy(self._values(seen)))
 
@@ -149,26 +150,26 @@ class PPO(Learner):
         Diagnostics are those of the last epoch, in which the policy is farthest from the one that acted.
         """
         settings = self.settings
-        shown = None
-        if imitation > 0.0 and rollout.shown is not None:
-            shown = torch.from_numpy(rollout.shown.reshape(-1, rollout.shown.shape[2]).astype(np.float32))
         advantage = advantages(rollout, self._gamma, settings.gae_lambda)
         target = advantage + rollout.value
-        observation, action, log_probability, advantage_, target_ = (
-            torch.from_numpy(array.reshape(-1, *array.shape[2:]).astype(np.float32))
-            for array in (rollout.observation, rollout.action, rollout.log_probability, advantage, target)
-        )
+        columns = [rollout.observation, rollout.action, rollout.log_probability, advantage, target]
+        if imitation > 0.0 and rollout.shown is not None:
+            columns.append(rollout.shown)
+        flat = [array.reshape(advantage.size, -1) for array in columns]
+        # In one table, so that a shuffle is one gather.
+        decisions = torch.from_numpy(np.concatenate(flat, axis=1, dtype=np.float32))
         for epoch in range(settings.num_epochs):
             last = epoch == settings.num_epochs - 1
-            order = torch.from_numpy(rng.permutation(len(action)))
-            for rows in torch.split(order, settings.minibatch_size):
+            shuffled = decisions.index_select(0, torch.from_numpy(rng.permutation(len(decisions))))
+            for rows in torch.split(shuffled, settings.minibatch_size):
+                observation, action, *rest = torch.split(rows, [array.shape[1] for array in flat], 1)
+                old, gain, aim = (column[:, 0] for column in rest[:3])
                 if policy == "improve":
-                    old, gain = log_probability[rows], advantage_[rows]
-                    lesson = None if shown is None else (shown[rows], imitation)
-                    self._update_policy(observation[rows], action[rows], old, gain, last, lesson)
+                    lesson = (rest[3], imitation) if len(rest) > 3 else None
+                    self._update_policy(observation, action, old, gain, last, lesson)
                 elif policy == "imitate":
-                    self._imitate(observation[rows], action[rows], last)
-                self._update_value(observation[rows], target_[rows], last)
+                    self._imitate(observation, action, last)
+                self._update_value(observation, aim, last)
                 self.updates += 1
         spread = target.var()
         if spread > 0.0:
@@ -230,9 +231,9 @@ class PPO(Learner):
 
     def _missed(self, output: Tensor, shown: Tensor) -> tuple[Tensor, Tensor]:
         """Return the loss of imitation, and its part of squared errors (m,), of outputs (m, action)."""
-        sure = self._continuous
-        off = (output - shown)[:, sure].square().sum(-1)
-        missed = softplus(-output[:, ~sure] * shown[:, ~sure].sign()).sum(-1)
+        off = (output - shown)[:, self._normal].square().sum(-1)
+        odds = output[:, self._thresholds]
+        missed = softplus(-odds * shown[:, self._thresholds].sign()).sum(-1)
         return (off + missed).mean(), off
 
     def _report_imitation(self, loss: Tensor, off: Tensor) -> None:
@@ -266,9 +267,9 @@ class PPO(Learner):
     def _evaluate_actions(self, output: Tensor, action: Tensor) -> tuple[Tensor, Tensor]:
         """Return log-probability and entropy, both (m,), of actions (m, action) under the policy's output."""
         log_std = self._log_std
-        off = (action[:, self._continuous] - output[:, self._continuous]) * (-log_std).exp()
+        off = (action[:, self._normal] - output[:, self._normal]) * (-log_std).exp()
         normal = -0.5 * off.square() - log_std - _LOG_ROOT
-        odds, kicks = output[:, ~self._continuous], action[:, ~self._continuous]
+        odds, kicks = output[:, self._thresholds], action[:, self._thresholds]
         # log sigmoid(x) = -softplus(-x), and 1 - sigmoid(x) = sigmoid(-x).
         thresholds = -softplus(-odds * kicks)
         threshold_entropy = softplus(odds) - odds * torch.sigmoid(odds)
@@ -294,6 +295,13 @@ def orthogonal(body: nn.Module, last_gain: float, generator: torch.Generator) ->
         nn.init.orthogonal_(layer.weight, gain, generator=generator)
         nn.init.zeros_(layer.bias)
     return layers[-1]
+
+
+def _columns(which: Sequence[bool]) -> slice | Tensor:
+    """Return where ``which`` is true, as a slice if that is one block, which costs no copy."""
+    places = [place for place, true in enumerate(which) if true]
+    first, end = (places[0], places[-1] + 1) if places else (0, 0)
+    return slice(first, end) if end - first == len(places) else torch.tensor(places)
 
 
 def _to_numpy(tensor: Tensor) -> Floats:
