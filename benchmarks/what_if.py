@@ -36,6 +36,9 @@ GOOD_CHANCE, EARLIEST = 0.1, 20.0
 HELD = 0.2
 """Time for which the robot has had the ball before its mistake [s]."""
 
+SEARCHED = 45.0
+"""Length of the matches in which a good chance is looked for [s]."""
+
 FOUND_WITHIN = 1.0
 """A moment counts as that of the mistake up to this long before and after [s]."""
 
@@ -60,7 +63,7 @@ def what_if(
     how fast the last match itself was played and recorded. coverage: in how many moments what really followed
     lies inside the 90 % interval of branches in which nothing changed, for the ball's place at the end and
     for expected goals. mistakes: matches in which a robot with a good chance gives the ball to an opponent;
-    place: the mistake's place in the list of the scan, 0 if it is not there.
+    place: the mistake's place in the list of the scan, 0 if it is not there; cpu_s: of the scan.
     """
     found: dict[str, Any] = {}
     with tempfile.TemporaryDirectory() as folder:
@@ -199,26 +202,29 @@ def find_mistakes(
     Args:
         folder: for recordings.
         count: how many matches.
-        seed: seed of the first match that is tried; those without a good chance in a minute are left out.
+        seed: seed of the first match that is tried; those without a good chance in :data:`SEARCHED` are left
+            out.
         tell: takes a line about each match.
     """
     found: list[dict[str, object]] = []
     while len(found) < count:
         seed += 1
-        chance = good_chance(recorded(folder, six_a_side(60.0), seed))
+        chance = good_chance(recorded(folder, six_a_side(SEARCHED), seed))
         if chance is None:
             continue
         at, robot = chance
         play = {f"{robot}.play": f"{PLANTED}:mistaken_player", f"{robot}.at": at}
         logged = recorded(folder, changed(six_a_side(at + 6.0), play), seed)
+        began = time.process_time()
         played = Branches(logged)
-        moments = scan(logged, Team.BLUE, played, every=1.0, count=5, trials=12, first=2, seed=seed)
+        moments = scan(logged, Team.BLUE, played, every=1.0, count=3, trials=8, first=1, seed=seed)
         played.close()
+        taken = time.process_time() - began
         near = [abs(one.time - at) <= FOUND_WITHIN for one in moments]
         place = near.index(True) + 1 if any(near) else 0
         tell(
-            f"seed {seed}: {robot} at {at:.2f} s, place {place} of {len(moments)}: "
+            f"seed {seed}: {robot} at {at:.2f} s, place {place} of {len(moments)}, {taken:.0f} CPU s: "
             + "; ".join(f"{one.time:.2f} s {one.decision.name} {one.gain:+.2f}" for one in moments)
         )
-        found.append({"seed": seed, "at": at, "robot": str(robot), "place": place})
+        found.append({"seed": seed, "at": at, "robot": str(robot), "place": place, "cpu_s": taken})
     return found
