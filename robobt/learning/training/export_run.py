@@ -76,7 +76,8 @@ def export_run(
     if actor.groups:
         # Its weights serve any team, so its file has places for the largest.
         most = {"mates": DIVISION_A.robots - 1, "opponents": DIVISION_A.robots}
-        task = make_task(environment.model_copy(update=most), 1)
+        environment = environment.model_copy(update=most)
+        task = make_task(environment, 1)
         actor = resized(actor, task.scale, task.observation.groups)
     skill = task.played_by
     card = ModelCard(

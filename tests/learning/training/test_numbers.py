@@ -9,6 +9,7 @@ import pytest
 import torch
 
 from robobt.learning.agents.networks import policy_of
+from robobt.learning.envs import make_task
 from robobt.learning.envs.several_worlds import SeveralWorlds
 from robobt.learning.envs.soccer.settings import SoccerSettings
 from robobt.learning.training.arenas import arenas_of, learners_in
@@ -90,6 +91,9 @@ def test_a_run_over_numbers_goes_on_with_other_numbers_and_plays_with_any(tmp_pa
     (path,) = export_run(tmp_path / "first", "any", tmp_path, starts=2)
     policy = load_policy(path)
     assert policy.card.observation.name == "team_view_10_11"
+    # The card's environment has the places that the model observes, so that the model can be judged in it.
+    environment = SoccerSettings.model_validate(policy.card.environment)
+    assert make_task(environment, 1).observation.size == policy.card.observation.size
     few = np.random.default_rng(0).normal(size=(5, 19 + 4 * 5))
     empty = [-5.0, 0.0, 0.0, 0.0]
     many = np.column_stack((few[:, :27], [empty * 8] * 5, few[:, 27:], [empty * 8] * 5))
