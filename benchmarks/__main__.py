@@ -26,6 +26,7 @@ COMMANDS = {
     "tournament": "tournament:tournament",
     "train": "train:train",
     "ppo": "ppo:ppo",
+    "train_to": "train_to:train_to",
     "degradation": "degradation:command",
     "blind_fields": "blind_fields:blind_fields",
     "delay_in_play": "delay_in_play:delay_in_play",

@@ -110,6 +110,22 @@ def test_the_learners_switches_are_compared(tmp_path: Path) -> None:
     assert (tmp_path / "comparison.md").read_text().count("\n") == 3
 
 
+@pytest.mark.integration
+def test_trainings_are_timed_beside_another_checkout() -> None:
+    short = "steps=1280", "evaluation.every=640", "evaluation.starts=2", "rebuild_every=640"
+    options = [word for each in short for word in ("--set", each)]
+    root = str(Path(__file__).parents[2])
+    for bar, reached, steps in (("0", True, 640), ("1", False, 1280)):
+        asked = "train_to", "go_to_ball", "--bar", bar, "--seeds", "1", "--starts", "2"
+        printed = told(*asked, "--beside", root, *options)
+        assert [checkout["folder"] for checkout in printed["checkouts"]] == ["", root]
+        for checkout in printed["checkouts"]:
+            (row,) = checkout["seeds"]
+            assert (row["reached"], row["steps"], len(row["curve"])) == (reached, steps, steps // 640)
+            assert row["cpu_s"] == row["curve"][-1][1] > 0.0
+            assert (checkout["median_cpu_s"] is not None) == reached
+
+
 def test_an_unknown_switch_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     told = run("train", "shoot", "--only", "magic", code=1)
