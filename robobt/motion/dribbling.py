@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from functools import lru_cache
-from math import cos, inf, sin, sqrt
+from math import cos, hypot, inf, sin, sqrt
 
 from robobt.motion.catch import MOUTH
 from robobt.motion.pilot import command, turn_rate
@@ -87,6 +87,28 @@ def carry(chosen: RobotCommand, me: RobotState) -> None:
     aside = me.limits.carry_aside
     if aside is not None and me.ball_contact:
         chosen.vy = min(aside, max(-aside, chosen.vy))
+
+
+def drive_gently(
+    chosen: RobotCommand, me: RobotState, acceleration: float, turning: float, period: float
+) -> None:
+    """Slow the change of a command down to a gentler robot's acceleration, the same in every direction.
+
+    Args:
+        chosen: the command; changed.
+        me: the robot.
+        acceleration: speeding up, braking and in curves [m/s^2].
+        turning: change of the turning rate [rad/s^2].
+        period: time until the next command [s].
+    """
+    c, s = cos(me.heading), sin(me.heading)
+    vx, vy = c * me.vx + s * me.vy, c * me.vy - s * me.vx
+    dx, dy = chosen.vx - vx, chosen.vy - vy
+    step, most = hypot(dx, dy), acceleration * period
+    if step > most:
+        chosen.vx, chosen.vy = vx + dx * most / step, vy + dy * most / step
+    most = turning * period
+    chosen.omega = me.omega + min(most, max(-most, chosen.omega - me.omega))
 
 
 def turn_with_ball(me: RobotState, heading: float, limits: RobotLimits, period: float) -> RobotCommand:

@@ -17,7 +17,7 @@ from robobt.models.actions import commander
 from robobt.models.file import ModelError, ModelFile, UnknownModelError
 from robobt.models.find import find_model, read_fitting_model
 from robobt.models.policy import load_policy
-from robobt.motion.dribbling import carry
+from robobt.motion.dribbling import carry, drive_gently
 from robobt.skills.kicker import has_kicked
 from robobt.skills.store import TeamStore
 from robobt.tree import Registry
@@ -34,7 +34,7 @@ from robobt.world.features import (
     go_to_ball_to_shoot_of,
     shoot_of,
 )
-from robobt.world.geometry import FloatArray
+from robobt.world.geometry import FloatArray, distance
 from robobt.world.memory import Memory, MemorySize, memory_of
 from robobt.world.observation import OWN_OBSERVATIONS
 from robobt.world.scoring import SCORE_ON_GOALKEEPER, score_on_goalkeeper_of
@@ -62,6 +62,12 @@ _shipped: dict[Path, ModelFile] = {}
 
 OBSERVATION = "observation"
 """The drawing layer for observations and actions of trained policies."""
+
+_WEAK_HOLD = 1.0
+"""A dribbler that holds the ball at less than this acceleration loses it in sharp turns [m/s^2]."""
+
+_AT_BALL = 0.25
+"""Distance from robot to ball within which that counts [m]."""
 
 _LARGEST_ACTION = 1.0 + 1e-4
 _LEAST_ACTION = -_LARGEST_ACTION
@@ -216,7 +222,9 @@ def load_shipped_policies() -> None:
 class PacedControl:
     """A trained policy that decides as often as in training; its last command holds in between.
 
-    With the ball in its mouth the robot drives sideways only as fast as its dribbler can hold the ball.
+    With the ball in its mouth the robot drives sideways only as fast as its dribbler can hold the ball. A
+    robot whose dribbler hardly holds a ball, and whose policy was trained with a better one, changes its
+    velocity at the ball no faster than the robot in training sped up.
 
     Args:
         model: as for :class:`LearnedControl`.
@@ -261,6 +269,13 @@ class PacedControl:
             self._decided = frame.time
         command = self._command.copy()
         carry(command, me)
+        trained = self.card.limits
+        if (
+            trained is not None
+            and me.limits.hold_acceleration < min(_WEAK_HOLD, trained.hold_acceleration)
+            and distance(me.position, frame.ball.position) < _AT_BALL
+        ):
+            drive_gently(command, me, trained.acceleration, trained.turn_acceleration, frame.period)
         return command
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from math import hypot
 from pathlib import Path
 
 import numpy as np
@@ -65,6 +66,31 @@ def test_it_leaves_a_ball_that_gets_lost_sideways_to_others(
     alone = Alone(Score(policy=str(model), weakest=weakest))
     me = replace(robot(2.0, 0.0), limits=RobotLimits(carry_aside=1.1))
     assert alone.tick(frame(me, ball=(2.1, 0.0), opponents=(robot(4.3, 0.4, number=3),))) is status
+
+
+@pytest.mark.parametrize(
+    ("held", "in_training", "ball", "slow"),
+    [
+        (0.35, 3.0, 2.1, True),
+        # A dribbler as in training, a better one, and a ball that is not there yet.
+        (0.35, 0.35, 2.1, False),
+        (1.5, 3.0, 2.1, False),
+        (0.35, 3.0, 2.4, False),
+    ],
+)
+def test_with_a_weak_dribbler_it_changes_its_velocity_at_the_ball_as_slowly_as_in_training(
+    tmp_path: Path, held: float, in_training: float, ball: float, slow: bool
+) -> None:
+    limits = RobotLimits(hold_acceleration=in_training, acceleration=2.0, turn_acceleration=20.0)
+    model = write_model(tmp_path, Passing(), score_card().model_copy(update={"limits": limits}))
+    alone = Alone(Score(policy=str(model)))
+    me = replace(robot(2.0, 0.0), vx=1.0, omega=1.0, limits=RobotLimits(hold_acceleration=held))
+    seen = frame(me, ball=(ball, 0.0), opponents=(robot(4.3, 0.4, number=3),))
+    alone.tick(seen)
+    commanded = alone.command
+    change = hypot(commanded.vx - 1.0, commanded.vy)
+    assert (change <= 2.0 * seen.period + 1e-9) is slow
+    assert (abs(commanded.omega - 1.0) <= 20.0 * seen.period + 1e-9) or not slow
 
 
 @pytest.mark.parametrize("weakest", [-0.1, 1.1])
