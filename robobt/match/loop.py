@@ -42,6 +42,9 @@ from robobt.world.state import Frame, RobotId
 
 _log = logging.getLogger(__name__)
 
+_CHECKED_EVERY = 60
+"""Ticks between two checks of whether trees of robobt's own code have changed the frame."""
+
 _MAY_READ = "a skill may only read the frame, and acts through self.store.command"
 
 WorldFactory = Callable[[Scenario], World]
@@ -117,7 +120,9 @@ class MatchLoop(Closing):
         self._judge = EndJudge(scenario, refereed, self.world.scenario_ends)
         self._trace = Trace()
         self._commands: dict[RobotId, RobotCommand] = {}
-        self._spoilers: set[tuple[RobotId, str]] = set()
+        self._only_own_code = self._check_code()
+        self._spoilers: set[tuple[RobotId | Team, str]] = set()
+        self._ball_placed = False
         self._time = 0.0
         # A recording may continue in another file later, when the working folder may have changed.
         path = None if record is None else Path(record).absolute()
@@ -159,6 +164,7 @@ class MatchLoop(Closing):
         """Let the robot of ``player`` play another tree from now on; ``play`` is the tree's name."""
         before = player.runner
         player.runner = run_tree(player.robot, tree, player.store, before.on_error, player.names)
+        self._only_own_code = self._check_code()
         before.stop()
         before.shutdown()
         self._captured.change_tree(before, player, play)
@@ -198,9 +204,11 @@ class MatchLoop(Closing):
         self.outcome = self._judge.judge(truth, self.game, self.measures.kicks, self.measures.kicked)
         frame = truth
         if self.outcome is None:
-            # Take a new frame, because the referee may have placed the ball since the true frame was taken.
-            frame = self.world.observe()
-            frame.game = self.game
+            # The referee may have placed the ball since the true frame was taken, and a user's skill could
+            # change frames that it has kept.
+            if self._ball_placed or not self.world.shows_truth or not self._only_own_code:
+                frame = self.world.observe()
+                frame.game = self.game
             self._commands = self.decide(frame)
         else:
             self._trace.event(self.outcome)
@@ -240,10 +248,13 @@ class MatchLoop(Closing):
     def decide(self, frame: Frame) -> dict[RobotId, RobotCommand]:
         """Tick every tree once on this frame and return each robot's command, without changing the world.
 
-        A robot that is not seen is not ticked and stands still.
+        A robot that is not seen is not ticked and stands still. What a tree with users' code may have changed
+        is looked at, and restored, when it has been ticked; what trees of robobt's own code have changed is
+        looked at once in many ticks.
         """
         commands: dict[RobotId, RobotCommand] = {}
-        process = OwnProcess()
+        process = None if self._only_own_code else OwnProcess()
+        watched = process is not None or self.measures.ticks % _CHECKED_EVERY == 0
         halted = frame.game.halted
         # Make both views before any tree is ticked, because they may share the frame's objects.
         views = [(team, frame.seen_by(team)) for team, lineup in self._lineups.items() if lineup.players]
@@ -251,10 +262,12 @@ class MatchLoop(Closing):
             lineup, kept = self._lineups[team], self._kept[team]
             # Trees do not see a robot that has left the field, but it is still driven.
             view = without_absent(everybody, everybody.game)
-            kept.take(view)
+            if watched:
+                kept.take(view)
             leaving = lineup.follow(everybody)
-            # The tick may have interrupted skills, which can change objects that this view shares.
-            kept.mend()
+            if process is not None:
+                # It may have interrupted skills, which can change objects that this view shares.
+                kept.mend()
             for me in everybody.own if leaving else ():
                 if me.id in leaving:
                     commands[lineup.players[me.id].robot] = leave(everybody, me, leaving)
@@ -262,30 +275,43 @@ class MatchLoop(Closing):
                 player = lineup.players.get(me.id)
                 if player is None or me.id in leaving:
                     continue
-                try:
+                if process is None or player.runner.own:
                     command = player.decide(view, me)
-                finally:
-                    strayed = process.hold()
-                if (changed := kept.mend()) is not None:
-                    named = f" ({changed[0]})" if changed else ""
-                    self._complain(player.robot, "the frame", named, _MAY_READ)
-                if strayed:
-                    self._complain(player.robot, "the working folder", "", "name files by whole paths")
+                else:
+                    try:
+                        command = player.decide(view, me)
+                    finally:
+                        strayed = process.hold()
+                    self._mend(kept, player.robot)
+                    if strayed:
+                        self._complain(player.robot, "the working folder", "", "name files by whole paths")
                 if command is None:
                     self._note_failure(player)
                     command = RobotCommand()
                 commands[player.robot] = command
+            if watched:
+                self._mend(kept, team)
         if halted:
             # Robots stop whatever their trees say, because not every play checks the referee.
             return {robot: RobotCommand() for robot in commands}
         return commands
 
-    def _complain(self, robot: RobotId, changed: str, field: str, advice: str) -> None:
-        """Warn once per robot that a skill changed something read-only."""
-        if (robot, changed) not in self._spoilers:
-            self._spoilers.add((robot, changed))
+    def _check_code(self) -> bool:
+        """Return whether only robobt's own code runs in all trees."""
+        return all(player.runner.own for player in self.players)
+
+    def _mend(self, kept: KeptView, who: RobotId | Team) -> None:
+        """Restore a team's view, and warn of changes by a robot, or by one of a team's."""
+        if (changed := kept.mend()) is not None:
+            named = f" ({changed[0]})" if changed else ""
+            self._complain(who, "the frame", named, _MAY_READ)
+
+    def _complain(self, who: RobotId | Team, changed: str, field: str, advice: str) -> None:
+        """Warn once per robot, or team, that a skill changed something read-only."""
+        if (who, changed) not in self._spoilers:
+            self._spoilers.add((who, changed))
             said = f"a skill of its tree changed {changed}{field}, which was restored; {advice}"
-            _log.warning("%s: %s", robot, said)
+            _log.warning("%s: %s", who, said)
 
     def _carry(self, frame: Frame) -> None:
         """Move robots that have left the field or come back, as their handlers would."""
@@ -307,6 +333,7 @@ class MatchLoop(Closing):
         assert self.referee is not None
         decision = self.referee.update(truth)
         self.game = decision.game
+        self._ball_placed = decision.place_ball is not None
         if decision.place_ball is not None:
             self.world.place_ball(*decision.place_ball)
         return decision.events

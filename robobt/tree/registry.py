@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterator
 from importlib.metadata import EntryPoint, entry_points
 from pathlib import Path
 from types import ModuleType
-from typing import Any, Generic, TypeVar
+from typing import Any, ClassVar, Generic, TypeVar
 
 from robobt.config.errors import unknown_name
 from robobt.tree.namespace import current_namespace, within
@@ -34,7 +34,12 @@ class Registry(Generic[T]):
         kind: kind of its objects, for messages ("play").
         group: entry point group that other packages add to, None for none.
         fits: returns whether an object is of that kind; used for other packages' entries.
+
+    Attributes:
+        foreign: names under which code outside robobt has registered something in any registry so far.
     """
+
+    foreign: ClassVar[set[str]] = set()
 
     def __init__(
         self, kind: str, group: str | None = None, fits: Callable[[object], bool] | None = None
@@ -61,6 +66,8 @@ class Registry(Generic[T]):
             raise TypeError(f'{registry}register takes a name: write @{registry}register("{meant}")')
 
         def enter(entry: T) -> T:
+            if getattr(entry, "__module__", "").partition(".")[0] != "robobt":
+                Registry.foreign.add(name)
             namespace = current_namespace()
             entries = self._entries if namespace is None else namespace.of(self)
             if name in entries:

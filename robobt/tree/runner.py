@@ -16,6 +16,7 @@ from robobt.config.errors import RobobtError, text_of
 from robobt.signals import Terminated
 from robobt.tree.engine import LEAVING, Marks, Tick, Visit, abandon, compile_tree
 from robobt.tree.leaf import bind
+from robobt.tree.origin import only_own_code
 from robobt.tree.walk import fault_of, node_path, postorder, preorder
 
 _log = logging.getLogger(__name__)
@@ -41,6 +42,7 @@ class TreeRunner:
 
     Attributes:
         nodes: every node in depth-first order, parents first; the order of :meth:`statuses`.
+        own: whether only robobt's own code runs in the tree, see :func:`~robobt.tree.origin.only_own_code`.
         error: the exception of the last tick, or None.
         ticks: number of ticks.
 
@@ -56,6 +58,7 @@ class TreeRunner:
         self.error: str | None = None
         self.ticks = 0
         self.nodes = preorder(root)
+        self.own = only_own_code(self.nodes)
         self._failed: Behaviour | None = None
         self._stock = False
         self._visitor: VisitorBase | None = None

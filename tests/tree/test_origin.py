@@ -1,0 +1,73 @@
+"""What counts as robobt's own code."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import pytest
+from py_trees.decorators import EternalGuard
+
+from robobt.plays import PLAYS
+from robobt.skills.aim.raters import RATERS
+from robobt.skills.aim.raters.open_angle import OpenAngle
+from robobt.skills.aim.select_shot import SelectShot
+from robobt.skills.ball.go_to_ball import GoToBall
+from robobt.skills.base import Skill
+from robobt.skills.stop import Stop
+from robobt.tree import Behaviour, Selector, Sequence, Status
+from robobt.tree.origin import only_own_code
+from robobt.tree.registry import Registry
+from robobt.tree.walk import preorder
+from robobt.world.command import RobotCommand
+
+
+class Theirs(Skill):
+    def on_running(self) -> Status:
+        return self.run()
+
+
+class TheirStop(Stop):
+    pass
+
+
+def _own(tree: Behaviour) -> bool:
+    return only_own_code(preorder(tree))
+
+
+@pytest.mark.parametrize("play", ["team_player", "team_goalkeeper", "attack_main", "goalkeeper"])
+def test_plays_that_ship_run_only_own_code(play: str) -> None:
+    assert _own(PLAYS[play]())
+
+
+def _patched() -> Behaviour:
+    stop = Stop()
+    stop.on_running = lambda: Status.RUNNING  # type: ignore[method-assign]
+    return stop
+
+
+@pytest.mark.parametrize(
+    "make",
+    [
+        Theirs,
+        TheirStop,
+        _patched,
+        lambda: GoToBall(policy=lambda _store, _approach: RobotCommand()),
+        lambda: EternalGuard("guard", Stop(), condition=lambda: True),
+        lambda: Selector("any", memory=False, children=[Sequence("all", memory=False, children=[Theirs()])]),
+    ],
+)
+def test_what_a_user_has_written_is_found(make: Callable[..., Any]) -> None:
+    assert not _own(make())
+
+
+def test_a_name_that_a_user_has_registered_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(Registry, "foreign", set())
+    undo = RATERS.undo_point()
+    try:
+        assert _own(SelectShot(rater="open_angle"))
+        RATERS.register("their_rater")(type("TheirRater", (OpenAngle,), {"__module__": __name__}))
+        assert not _own(SelectShot(rater="their_rater"))
+        assert _own(SelectShot(rater="open_angle"))
+    finally:
+        undo()
