@@ -27,6 +27,7 @@ from robobt.motion.scene import (
     is_open,
     row_of,
     scene_of,
+    trip_numbers,
     trip_of,
 )
 from robobt.motion.stadium import outside_stadium
@@ -113,7 +114,8 @@ def travel(
         freedom: obstacles to avoid and areas that may be entered: :class:`~robobt.motion.scene.Freedom`.
     """
     goal = outside_stadium(frame, me, target)
-    trip = trip_of(me, goal, heading, final_speed if goal is target else 0.0, **freedom)
+    numbers = trip_numbers(me, goal, heading, final_speed if goal is target else 0.0, **freedom)
+    trip = np.array(numbers, dtype=np.float64)
     scene, robots, own = scene_of(frame), movers_of(frame), limits_of(me.limits)
     if sketch is not None:
         sketch.point(TARGETS, target)

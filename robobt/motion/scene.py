@@ -104,7 +104,34 @@ def trip_of(
     placing: bool = False,
 ) -> FloatArray:
     """Return the :class:`~robobt.world.records.Trip` of one robot; options as of :class:`Freedom`."""
-    trip = (
+    trip = trip_numbers(
+        me,
+        target,
+        heading,
+        final_speed,
+        avoid_robots=avoid_robots,
+        avoid_ball=avoid_ball,
+        ball_gap=ball_gap,
+        goalkeeper=goalkeeper,
+        placing=placing,
+    )
+    return np.array(trip, dtype=np.float64)
+
+
+def trip_numbers(
+    me: RobotState,
+    target: Point,
+    heading: float = 0.0,
+    final_speed: float = 0.0,
+    *,
+    avoid_robots: bool = True,
+    avoid_ball: bool = False,
+    ball_gap: float = BALL_GAP,
+    goalkeeper: bool = False,
+    placing: bool = False,
+) -> tuple[float, ...]:
+    """Return the numbers of a :class:`~robobt.world.records.Trip`; options as of :class:`Freedom`."""
+    return (
         me.x,
         me.y,
         me.heading,
@@ -121,7 +148,6 @@ def trip_of(
         placing,
         me.id,
     )
-    return np.array(trip, dtype=np.float64)
 
 
 @compiled_merged

@@ -12,6 +12,7 @@ from robobt.motion.ball_watch import BallWatch
 from robobt.skills.aims import Pass
 from robobt.skills.tactics_settings import DEFAULT_TACTICS, TacticsSettings, applied
 from robobt.world.ball_model import BallModel
+from robobt.world.command import RobotCommand
 from robobt.world.field import FieldGeometry
 from robobt.world.geometry import FloatArray, Point
 from robobt.world.records import MOVER_SIZE
@@ -73,6 +74,7 @@ class TeamPlan:
         short: where a team-mate stands close to the ball of an own restart [m], None without one.
         watch: detects whether the ball slides or rolls.
         rolling: speed below which the ball rolls [m/s].
+        ways: commands on the ways to ``places``, of :mod:`robobt.skills.tactics.ways`; None until asked for.
     """
 
     frame: Frame | None = None
@@ -102,6 +104,7 @@ class TeamPlan:
     short: Point | None = None
     watch: BallWatch = field(default_factory=BallWatch)
     rolling: float = 0.0
+    ways: dict[int, RobotCommand] | None = None
 
     def change_tactics(self, given: TacticsSettings) -> None:
         """Use the settings ``given`` from now on; settings that are not given stay unchanged."""

@@ -12,14 +12,15 @@ that it has made itself, unless it uses that array after the record.
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from typing import Any, Protocol
+from struct import pack_into
+from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 
 from robobt.world.compiled import compilable, record_dtype
 from robobt.world.geometry import FloatArray
 from robobt.world.limits import RobotLimits
-from robobt.world.state import BallState, Frame, RobotState
+from robobt.world.state import MIRRORED_FROM, BallState, Frame, RobotState
 
 
 class Robot(Protocol):
@@ -167,20 +168,37 @@ SCENE, TRIP = record_dtype(Scene), record_dtype(Trip)
 ROBOT_SIZE, BALL_SIZE, MOVER_SIZE = (len(kind.names or ()) for kind in (ROBOT, BALL, MOVER))
 """How many numbers they are."""
 
+_MOVER_PLACES = slice(0, 4)
+"""Columns of a :class:`Mover` that change their signs where the other team looks."""
+
 _MOST_KNOWN = 256
-_KNOWN_LIMITS: dict[int, tuple[RobotLimits, FloatArray]] = {}
+
+
+class _KnownLimits(NamedTuple):
+    """A robot's limits, their numbers, and the three that a :class:`Mover` has."""
+
+    limits: RobotLimits
+    numbers: FloatArray
+    moving: tuple[float, float, float]
+
+
+_KNOWN_LIMITS: dict[int, _KnownLimits] = {}
 """By the limits' id, which stays theirs as they are kept too: hashing and comparing a model takes longer."""
 
 
 def limits_of(limits: RobotLimits) -> FloatArray:
     """Return a robot's limits as the numbers of :class:`Limits`; made once."""
-    known = _KNOWN_LIMITS.get(id(limits))
-    if known is None:
-        if len(_KNOWN_LIMITS) >= _MOST_KNOWN:
-            _KNOWN_LIMITS.clear()
-        numbers = [getattr(limits, name) for name in LIMITS.names or ()]
-        known = _KNOWN_LIMITS[id(limits)] = (limits, np.array(numbers, dtype=np.float64))
-    return known[1]
+    return (_KNOWN_LIMITS.get(id(limits)) or _know(limits)).numbers
+
+
+def _know(limits: RobotLimits) -> _KnownLimits:
+    """Keep limits that are not known yet."""
+    if len(_KNOWN_LIMITS) >= _MOST_KNOWN:
+        _KNOWN_LIMITS.clear()
+    numbers = np.array([getattr(limits, name) for name in LIMITS.names or ()], dtype=np.float64)
+    moving = limits.max_speed, limits.acceleration, limits.braking
+    known = _KNOWN_LIMITS[id(limits)] = _KnownLimits(limits, numbers, moving)
+    return known
 
 
 def robot_of(robot: RobotState) -> FloatArray:
@@ -195,29 +213,42 @@ def ball_of(ball: BallState) -> FloatArray:
 
 def movers(robots: Iterable[RobotState]) -> FloatArray:
     """Return every robot as the numbers of :class:`Mover`, (n, ``MOVER_SIZE``)."""
-    row: list[float] = []
+    numbers: list[float] = []
     for robot in robots:
         limits = robot.limits
-        row += (
-            robot.x,
-            robot.y,
-            robot.vx,
-            robot.vy,
-            limits.max_speed,
-            limits.acceleration,
-            limits.braking,
-            robot.id,
-        )
-    # From one list, for numpy takes twice as long over a list of rows.
-    return np.array(row, dtype=np.float64).reshape(-1, MOVER_SIZE)
+        known = _KNOWN_LIMITS.get(id(limits)) or _know(limits)
+        numbers += (robot.x, robot.y, robot.vx, robot.vy, *known.moving, robot.id)
+    # Numpy takes longer over a list of numbers, and twice as long over a list of rows.
+    packed = bytearray(8 * len(numbers))
+    pack_into(f"={len(numbers)}d", packed, 0, *numbers)
+    return np.frombuffer(packed, dtype=np.float64).reshape(-1, MOVER_SIZE)
 
 
 def movers_of(frame: Frame) -> FloatArray:
-    """Return :func:`movers` of everybody on the field, the own team first; made once a frame."""
+    """Return :func:`movers` of everybody on the field, the own team first; made once for both teams."""
     made: FloatArray | None = frame.made.get("movers")
     if made is None:
-        made = frame.made["movers"] = movers((*frame.own, *frame.opponents))
+        before: Frame | None = frame.made.get(MIRRORED_FROM)
+        if before is None:
+            made = movers((*frame.own, *frame.opponents))
+        else:
+            made = turned(movers_of(before), len(before.own), _MOVER_PLACES)
+        frame.made["movers"] = made
     return made
+
+
+def turned(rows: FloatArray, own: int, places: slice) -> FloatArray:
+    """Return rows of everybody as the other team sees them.
+
+    Args:
+        rows: one of each robot (n, m), the ``own`` team first.
+        own: how many robots that team has.
+        places: columns with coordinates and velocities.
+    """
+    other = np.concatenate((rows[own:], rows[:own]))
+    changed = other[:, places]
+    np.negative(changed, out=changed)
+    return other
 
 
 @compilable

@@ -269,13 +269,24 @@ def keeps_ball(robot: Robot, ball: Ball) -> bool:
 
 
 def owner(frame: Frame) -> RobotId | None:
-    """Return the robot that has the ball; the nearest of several, or None."""
+    """Return the robot that has the ball; the nearest of several, or None. Looked for once a frame."""
+    made = frame.made
+    if "owner" not in made:
+        made["owner"] = _owner(frame)
+    found: RobotId | None = made["owner"]
+    return found
+
+
+def _owner(frame: Frame) -> RobotId | None:
     best: RobotId | None = None
     nearest = 2.0 * _HOLDING_REACH
+    ball = frame.ball
+    x, y = ball.x, ball.y
     for team, robots in ((frame.team, frame.own), (frame.team.other, frame.opponents)):
         for robot in robots:
-            if has_ball(robot, frame.ball):
-                gap = hypot(frame.ball.x - robot.x, frame.ball.y - robot.y)
+            # Most robots are far from it, as the first number says.
+            if (abs(x - robot.x) <= _HOLDING_REACH or robot.ball_contact) and has_ball(robot, ball):
+                gap = hypot(x - robot.x, y - robot.y)
                 if gap < nearest:
                     best, nearest = RobotId(team, robot.id), gap
     return best

@@ -9,12 +9,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 from math import hypot, pi
 from struct import pack
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from robobt.world.ball_model import DEFAULT_BALL, BallModel
 from robobt.world.field import FieldGeometry
 from robobt.world.game import OPEN_PLAY, GameState, Team
-from robobt.world.geometry import FloatArray
 from robobt.world.limits import DEFAULT_LIMITS, RobotLimits
 
 ROBOT_RADIUS = 0.09
@@ -35,6 +34,10 @@ RECEIVED_HEIGHT = 0.05
 
 GOAL_HEIGHT = 0.155
 """Height of a goal's inside, up to its bar. Source: ER-Force's simulator; the rules say 0.16 [m]."""
+
+
+MIRRORED_FROM = "mirrored from"
+"""Where :attr:`Frame.made` holds the frame of which it is the mirror image."""
 
 
 class RobotId(NamedTuple):
@@ -115,10 +118,10 @@ class Derived:
     """A value derived from a frame, computed once and cached with it."""
 
     __slots__ = ("_made",)
-    _made: dict[str, FloatArray]
+    _made: dict[str, Any]
 
     @property
-    def made(self) -> dict[str, FloatArray]:
+    def made(self) -> dict[str, Any]:
         """The cached values; clear them after changing the frame."""
         try:
             return self._made
@@ -212,7 +215,7 @@ class Frame(Derived):
         frame are the same in both views.
         """
         ball = self.ball
-        return Frame(
+        turned = Frame(
             self.time,
             self.field,
             BallState(-ball.x, -ball.y, -ball.vx, -ball.vy, ball.z, ball.vz),
@@ -224,6 +227,8 @@ class Frame(Derived):
             self.last_touch,
             self.ball_model,
         )
+        turned.made[MIRRORED_FROM] = self
+        return turned
 
     def seen_by(self, team: Team) -> Frame:
         """Return this frame from ``team``'s side; itself when it already is."""

@@ -12,22 +12,25 @@ from typing import NamedTuple
 
 import numpy as np
 
-from robobt.motion.arrival import arrival_times, meetings
+from robobt.motion.meetings import meetings_of
 from robobt.skills.aim.goalkeeper_watch import GoalkeeperWatch
 from robobt.skills.kicker import follow_restart
 from robobt.skills.plan import Task, TeamPlan
 from robobt.skills.store import Pass, TeamStore
-from robobt.skills.tactics.assignment import assign
+from robobt.skills.tactics.assignment import NO_JOB, jobs_of
 from robobt.skills.tactics.attacker import NOBODY, AttackerCandidate, choose_attacker, may_be_attacked
 from robobt.skills.tactics.defence import mark_places, threats, wall_places
 from robobt.skills.tactics.support import short_place, support_places
 from robobt.world.game import Restart
 from robobt.world.geometry import Point, distance
-from robobt.world.records import MEETING, MOVER, ball_of, movers_of
+from robobt.world.records import MEETING, MOVER, movers_of
 from robobt.world.rules import has_ball, owner
 from robobt.world.state import Frame, RobotState
 
 _RASTER = 0.05
+_MOVER_NAMES = MOVER.names or ()
+_QUICKNESS = slice(_MOVER_NAMES.index("max_speed"), _MOVER_NAMES.index("acceleration") + 1)
+_TIME = (MEETING.names or ()).index("time")
 _NO_CANDIDATE = AttackerCandidate(inf, 0.0, False)
 
 
@@ -36,7 +39,7 @@ def agree(frame: Frame, team: TeamStore) -> TeamPlan:
     plan = team.plan
     if plan.frame is frame:
         return plan
-    plan.frame = frame
+    plan.frame, plan.ways = frame, None
     follow_restart(frame, team)
     team.shared(GoalkeeperWatch).follow(frame)
     players = [robot for robot in frame.own if robot.id in plan.players]
@@ -63,20 +66,15 @@ def pass_under_way(frame: Frame, team: TeamStore) -> bool:
 
 
 def _look(frame: Frame, plan: TeamPlan) -> None:
-    ball, field = frame.ball, frame.field
-    plan.apply_tactics(field, frame.ball_model)
+    plan.apply_tactics(frame.field, frame.ball_model)
     plan.rolling = plan.watch.rolling_speed(frame)
     everybody = movers_of(frame)
     plan.own_movers, theirs = everybody[: len(frame.own)], everybody[len(frame.own) :].copy()
-    for limit in ("max_speed", "acceleration"):
-        limited = theirs.view(MOVER)[limit]
-        np.minimum(limited, plan.tactics.quickest, out=limited)
+    limited = theirs[:, _QUICKNESS]
+    np.minimum(limited, plan.tactics.quickest, out=limited)
     plan.their_movers = theirs
-    slide, roll = frame.ball_model.slide_deceleration, frame.ball_model.roll_deceleration
-    plan.meetings = meetings(
-        everybody, ball_of(ball), plan.rolling, slide, roll, field.half_length, field.half_width
-    )
-    times = plan.meetings.view(MEETING)["time"].ravel().tolist()
+    plan.meetings = meetings_of(frame, plan.rolling)
+    times = plan.meetings[:, _TIME].tolist()
     ours, rest = times[: len(frame.own)], times[len(frame.own) :]
     plan.own_times = {robot.id: time for robot, time in zip(frame.own, ours, strict=True)}
     plan.their_times = {robot.id: time for robot, time in zip(frame.opponents, rest, strict=True)}
@@ -231,17 +229,22 @@ def _hand_out(
     if not jobs:
         return
     waiting = {robot.id for robot in free}
-    rows = np.array([row for row, robot in enumerate(frame.own) if robot.id in waiting])
-    times = arrival_times(plan.own_movers, rows, np.array([job.place for job in jobs]))
-    for i, robot in enumerate(free):
-        old = plan.tasks.get(robot.id)
-        for j, job in enumerate(jobs):
-            if old is job.task and (old is not Task.MARK or plan.marks.get(robot.id) == job.what):
-                times[i, j] -= plan.tactics.keep_gain
-    # Times are squared so that the longest way counts most, which avoids crossing ways.
-    cost = times + plan.tactics.long_way * times * times
-    for row, column in assign(cost):
-        yield free[row], jobs[column]
+    rows = [row for row, robot in enumerate(frame.own) if robot.id in waiting]
+    tasks, marks, gain = plan.tasks, plan.marks, plan.tactics.keep_gain
+    gains: list[list[float]] = []
+    for robot in free:
+        old, marked = tasks.get(robot.id), marks.get(robot.id)
+        gains.append(
+            [
+                gain if old is job.task and (old is not Task.MARK or marked == job.what) else 0.0
+                for job in jobs
+            ]
+        )
+    places = np.array([job.place for job in jobs])
+    found = jobs_of(plan.own_movers, np.array(rows), places, np.array(gains), plan.tactics.long_way)
+    for robot, number in zip(free, found.tolist(), strict=True):
+        if number != NO_JOB:
+            yield robot, jobs[number]
 
 
 def _near(intended: Pass | None, place: Point, gap: float) -> bool:

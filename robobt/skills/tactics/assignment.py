@@ -5,9 +5,50 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from robobt.motion.arrival import time_to
 from robobt.world.compiled import FloatArray, compiled
+from robobt.world.records import mover_records
+
+NO_JOB = -1
+"""The job of a robot that gets none."""
 
 _UNASSIGNED = -1
+
+
+@compiled
+def jobs_of(
+    movers_: FloatArray, rows: NDArray[np.int64], places: FloatArray, gains: FloatArray, long_way: float
+) -> NDArray[np.int64]:
+    """Return the job of each robot, (n,), so that all robots together are soonest at their places.
+
+    If there are more robots than places, some get :data:`NO_JOB`.
+
+    Args:
+        movers_: as of :func:`robobt.world.records.movers`.
+        rows: of the robots among them, (n,).
+        places: of the jobs, (m, 2) [m].
+        gains: bonus of each robot for each job, (n, m) [s].
+        long_way: how much the square of a time counts, so that the longest way counts most, which avoids
+            crossing ways [1/s].
+    """
+    movers, robots, jobs = mover_records(movers_), len(rows), len(places)
+    few = robots <= jobs
+    cost = np.empty((robots, jobs) if few else (jobs, robots))
+    for i in range(robots):
+        for j in range(jobs):
+            x, y = places[j]
+            time = time_to(movers[rows[i]], x, y, 0.0) - gains[i, j]
+            if few:
+                cost[i, j] = time + long_way * time * time
+            else:
+                cost[j, i] = time + long_way * time * time
+    columns = _columns(cost)
+    if few:
+        return columns
+    found = np.full(robots, NO_JOB)
+    for j in range(jobs):
+        found[columns[j]] = j
+    return found
 
 
 def assign(cost: FloatArray) -> list[tuple[int, int]]:

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from robobt.motion.path_planner import PATHS, TARGETS
 from robobt.skills.ball.learned_control import PolicyError
 from robobt.skills.base import Skill, skill
 from robobt.skills.learned_way import LearnedWay
 from robobt.skills.tactics.agree import agree
+from robobt.skills.tactics.ways import way_to_place
 from robobt.tree import Status
 from robobt.world.command import RobotCommand
+from robobt.world.geometry import Point
 
 
 @skill
@@ -32,6 +35,8 @@ class TakePlace(Skill):
     def __post_init__(self) -> None:
         super().__post_init__()
         self._learned = LearnedWay(self.policy) if self.policy else None
+        self._told: Point | None = None
+        self._text = ""
 
     def on_start(self) -> None:
         """Forget the last decision."""
@@ -56,8 +61,17 @@ class TakePlace(Skill):
             if command is not None:
                 self.store.command = command
                 return self.run("to its place as learned")
-        slack = plan.tactics.facing
-        self.drive_to(
-            place, frame.ball.position, avoid_ball=True, thereabouts=True, slack=slack, spare_mates=True
-        )
-        return self.run(f"to ({place[0]:.1f}, {place[1]:.1f})")
+        draw = self.draw
+        # Only a robot that plans its way alone draws it.
+        way = None if draw.wants(PATHS) else way_to_place(frame, self.store.team, self.me.id)
+        if way is not None:
+            draw.point(TARGETS, place)
+            self.store.command = way
+        else:
+            slack = plan.tactics.facing
+            self.drive_to(
+                place, frame.ball.position, avoid_ball=True, thereabouts=True, slack=slack, spare_mates=True
+            )
+        if place is not self._told:
+            self._told, self._text = place, f"to ({place[0]:.1f}, {place[1]:.1f})"
+        return self.run(self._text)

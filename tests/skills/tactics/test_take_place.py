@@ -37,6 +37,25 @@ def test_it_looks_only_roughly_at_the_ball(heading: float, turns: bool) -> None:
     assert (abs(alone.command.omega) > 0.1) is turns
 
 
+def test_its_way_is_the_same_where_its_path_is_drawn() -> None:
+    view = frame(
+        robot(-2.0, 0.0, number=1),
+        (1.0, 0.5),
+        (robot(0.5, 0.5, number=2), robot(-2.0, 0.4, number=3)),
+        game=OPEN,
+    )
+    commands = []
+    for layers in ((), ("paths",)):
+        alone = Alone(TakePlace())
+        alone.store.team.plan.players.update((1, 2, 3))
+        alone.store.draw.want(layers, set())
+        view.made.clear()
+        alone.tick(view, 1)
+        commands.append(alone.command)
+    assert commands[0] == commands[1]
+    assert commands[0].vx != 0.0
+
+
 def test_a_robot_without_a_place_fails() -> None:
     alone = Alone(TakePlace())
     assert alone.tick(frame(robot(number=1), (1.0, 0.5), game=OPEN), 1) is Status.FAILURE
