@@ -22,7 +22,7 @@ from robobt.skills.tactics.lanes import (
 )
 from robobt.skills.tactics_settings import TACTICS, AppliedTactics
 from robobt.world.compiled import compiled, compiled_merged, record_dtype
-from robobt.world.geometry import FloatArray, distance
+from robobt.world.geometry import FloatArray, Point, distance
 from robobt.world.records import mover_records
 from robobt.world.state import Frame, RobotState
 
@@ -55,6 +55,7 @@ class _Rated(Protocol):
 
 
 _RATED = record_dtype(_Rated)
+_RATED_SIZE = len(_RATED.names or ())
 
 _TAKEN_PASS, _SENT_ON_PASS, _CHIPPED_PASS = 0, 1, 2
 """Kinds of passes: along the ground, by what the receiver does with it, or chipped."""
@@ -87,20 +88,19 @@ def passes(
         for index, mate in enumerate(frame.own)
         if mate.id != me.id and mate.id != keeper and mate.id in plan.players
     ]
-    points, owners = [], []
+    points: list[Point] = []
+    owners: list[int] = []
     offsets = _offsets()
     for index, mate in rows:
         bx, by = mate.x + 0.25 * mate.vx, mate.y + 0.25 * mate.vy
-        for dx, dy in offsets:
-            points.append((bx + dx, by + dy))
-            owners.append(index)
+        targets = [(bx + dx, by + dy) for dx, dy in offsets]
         place = plan.places.get(mate.id)
         if place is not None and distance(place, mate.position) < 2.0:
-            points.append(place)
-            owners.append(index)
+            targets.append(place)
         if last is not None and last.receiver == mate.id:
-            points.append(last.target)
-            owners.append(index)
+            targets.append(last.target)
+        points += targets
+        owners += [index] * len(targets)
     if not points:
         return []
     rated = _rate(
@@ -153,12 +153,13 @@ def _rate(
     opponents_: FloatArray,
     allowed_: tuple[float, bool, float, float, float],
     numbers: FloatArray,
-) -> NDArray[np.record]:
-    """Rate passes to points (G, 2) of the robots ``owners``; return the best to each, :class:`_Rated`.
+) -> FloatArray:
+    """Rate passes to points (G, 2) of the robots ``owners``; return the best to each as a :class:`_Rated`.
 
     ``allowed_`` holds the values of :class:`_Allowed`.
     """
-    rated = np.zeros(len(points), dtype=_RATED)
+    passes = np.zeros((len(points), _RATED_SIZE))
+    rated = passes.view(_RATED)[:, 0]
     tactics: AppliedTactics = numbers.view(TACTICS)[0]
     own, opponents, allowed = mover_records(own_), mover_records(opponents_), _Allowed(*allowed_)
     for g in range(len(points)):
@@ -214,7 +215,7 @@ def _rate(
             if score > best.score:
                 best.score, best.speed, best.wait = score, speed, max(0.0, ready - flight)
                 best.chip = 1.0 if kind == _CHIPPED_PASS else 0.0
-    return rated
+    return passes
 
 
 @compiled_merged

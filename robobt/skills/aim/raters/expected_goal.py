@@ -80,6 +80,8 @@ class ExpectedGoal(LearnedRater):
         chances = self.chances(frame, origin, me, points, watch)
         if chances is None:
             return [], None
+        if not chances.any():
+            return [], (points, chances)
         aims, (_, y) = directions(origin, points), points.T
         half_step = float(aims[-1] - aims[0]) / max(1, len(aims) - 1) / 2.0
         shots = []
@@ -115,19 +117,22 @@ class ExpectedGoal(LearnedRater):
         mouth = goal_mouth(frame.field, origin, BALL_RADIUS)
         if mouth is None:
             return None
-        aims = directions(origin, points)
-        low, high = mouth
-        chances = normal_cdf((high - aims) / self.kick_error) - normal_cdf((low - aims) / self.kick_error)
         ahead = [robot for robot in frame.others(me.id) if robot.x >= me.x]
+        clear = np.ones(len(points), dtype=np.bool_)
         if ahead:
             centres = np.array([robot.position for robot in ahead])
             clear = lane_clearances(origin, points, centres).min(axis=1) >= ROBOT_RADIUS + BALL_RADIUS
+            if not clear.any():
+                return np.zeros(len(points))
+        aims = directions(origin, points)
+        low, high = mouth
+        chances: FloatArray = normal_cdf((high - aims) / self.kick_error)
+        chances -= normal_cdf((low - aims) / self.kick_error)
+        if ahead:
             chances[~clear] = 0.0
-            if clear.any():
-                predicted = chances_by_kind(self.model, origin, me, points[clear], ahead)
-                chances[clear] *= predicted @ kind_weights(self.model, self.goalkeeper, watch)
-        result: FloatArray = chances
-        return result
+            predicted = chances_by_kind(self.model, origin, me, points[clear], ahead)
+            chances[clear] *= predicted @ kind_weights(self.model, self.goalkeeper, watch)
+        return chances
 
 
 _SAME = 0.02
