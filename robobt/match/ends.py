@@ -113,10 +113,11 @@ class EndJudge:
         self._ball_before = truth.ball
         self._was_out = ball_out(truth.field, truth.ball.position)
         if self._referee:
-            score = {Team.BLUE: game.blue_score, Team.YELLOW: game.yellow_score}
-            scorers = [team for team in Team if score[team] > self.scores[team]]
-            self.scores = score
-            return scorers[0] if scorers else None
+            before_blue, before_yellow = self.scores[Team.BLUE], self.scores[Team.YELLOW]
+            self.scores[Team.BLUE], self.scores[Team.YELLOW] = game.blue_score, game.yellow_score
+            if game.blue_score > before_blue:
+                return Team.BLUE
+            return Team.YELLOW if game.yellow_score > before_yellow else None
         team = scorer(truth.field, before, truth.ball)
         if team is not None:
             self.scores[team] += 1

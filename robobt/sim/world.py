@@ -169,8 +169,7 @@ class SimWorld(World):
             rows[~lost] = np.array(sent)[~lost]
         self._arenas.step(self._commands)
         self._ticks += 1
-        kicked = self._arenas.kicked[0]
-        self.kicks = [self._ids[i] for i in kicked.nonzero()[0]] if kicked.any() else []
+        self.kicks = [self._ids[i] for i in self._arenas.kicked[0].nonzero()[0].tolist()]
         if self._delayed:
             for rows in self._arenas.history[:, 0]:
                 self._past.append(rows.copy())

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from math import atan2, radians
+from math import atan2, hypot, radians
 from typing import TypeVar, dataclass_transform
 
 from robobt.motion.path_planner import travel
@@ -12,7 +12,7 @@ from robobt.motion.scene import BALL_GAP
 from robobt.skills.store import Store
 from robobt.tree import Leaf, Registry
 from robobt.world.compiled import compilable
-from robobt.world.geometry import Point, direction, distance
+from robobt.world.geometry import Point, direction
 from robobt.world.limits import RobotLimits
 from robobt.world.records import Robot
 from robobt.world.sketch import Sketch
@@ -117,8 +117,8 @@ def heading_thereabouts(me: Robot, facing: Point, slack: float) -> float:
 
     The direction to a close point changes quickly, and the robot's own width covers a larger angle there.
     """
-    here = (me.x, me.y)
-    return roughly(me.heading, direction(here, facing), slack + atan2(ROBOT_RADIUS, distance(here, facing)))
+    dx, dy = facing[0] - me.x, facing[1] - me.y
+    return roughly(me.heading, atan2(dy, dx), slack + atan2(ROBOT_RADIUS, hypot(dx, dy)))
 
 
 class Condition(Skill):

@@ -49,7 +49,9 @@ def compensated(commands: Mapping[RobotId, RobotCommand], frame: Frame) -> Mappi
         commands: velocities that the robots are to reach.
         frame: with the robots' limits.
     """
-    if all(state.limits.answers_as_commanded for state in (*frame.own, *frame.opponents)):
+    # Most robots have the same limits.
+    limits = {id(state.limits): state.limits for state in (*frame.own, *frame.opponents)}
+    if all(each.answers_as_commanded for each in limits.values()):
         return commands
     changed = {}
     for robot, state in frame.robots().items():

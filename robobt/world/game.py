@@ -160,9 +160,15 @@ class GameState:
 
     def mirrored(self) -> GameState:
         """Return the same state in coordinates turned by 180 degrees."""
+        global _last_mirrored
         if self.placement is None:
             return self
-        return replace(self, placement=(-self.placement[0], -self.placement[1]))
+        last, image = _last_mirrored
+        if last is not self:
+            image = replace(self, placement=(-self.placement[0], -self.placement[1]))
+            # A state mostly lasts for many frames.
+            _last_mirrored = self, image
+        return image
 
 
 # Tuples: hashing an enum's member is a Python call, and every robot asks.
@@ -181,3 +187,4 @@ _COMMAND_TEAMS = {
 }
 OPEN_PLAY = GameState()
 """Free play without a referee, for scenarios without one."""
+_last_mirrored = OPEN_PLAY, OPEN_PLAY

@@ -179,8 +179,9 @@ class Capture:
     def look(self, who: object, layers: Container[str]) -> None:
         """Enable drawing in the layers that a viewer wants, from now on."""
         self._lookers[who] = layers
-        wanted = _Layers([each for each in self._lookers.values() if each])
-        self._looked_at = bool(wanted.of)
+        looked_at = [each for each in self._lookers.values() if each]
+        self._looked_at = bool(looked_at)
+        wanted = _Layers(looked_at) if looked_at else ()
         for sketch in self._sketches.values():
             sketch.want(wanted, self.layers)
 

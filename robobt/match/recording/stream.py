@@ -115,7 +115,9 @@ def _schema_of(header: RecordingHeader, version: str = str(RECORDING_VERSION)) -
 def new_stream(sink: BinaryIO | pa.NativeFile, header: RecordingHeader) -> pa.ipc.RecordBatchStreamWriter:
     """Start a recording with this header; every batch has its schema and is compressed."""
     schema = _schema_of(header)
-    writer = pa.ipc.new_stream(sink, schema, options=pa.ipc.IpcWriteOptions(compression="zstd"))
+    # A second of play is too little to be shared out between threads.
+    options = pa.ipc.IpcWriteOptions(compression="zstd", use_threads=False)
+    writer = pa.ipc.new_stream(sink, schema, options=options)
     # Arrow writes the schema with the first batch.
     writer.write_batch(pa.RecordBatch.from_pylist([], schema))
     return writer

@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+from bisect import bisect_left
+from collections.abc import Iterator
 from enum import Enum, auto
+from math import hypot
+from operator import attrgetter
 
 from robobt.match.referee.settings import RefereeSettings
 from robobt.match.referee.touches import Touches
@@ -11,7 +15,12 @@ from robobt.world.field import FieldGeometry
 from robobt.world.game import GameState, RefereeCommand, Restart, Team
 from robobt.world.presence import without_absent
 from robobt.world.rules import ball_out
-from robobt.world.state import BallState, Frame, RobotId, RobotState
+from robobt.world.state import ROBOT_RADIUS, BallState, Frame, RobotId, RobotState
+
+_ROBOT_TOUCH_DISTANCE = 1.1 * 2.0 * ROBOT_RADIUS
+"""Robots whose centres are no farther apart than this touch [m]. Source: AutoReferee."""
+
+_place = attrgetter("x")
 
 
 class PlayPhase(Enum):
@@ -66,6 +75,7 @@ class RefereeScene:
         self._read: GameState | None = None
         self._state: object = None
         self._seen = False
+        self._touching: list[tuple[RobotState, RobotState]] | None = None
 
     def update(self, frame: Frame, game: GameState) -> bool:
         """Take in the next frame; return whether a phase begins with it, even the same phase again."""
@@ -73,6 +83,7 @@ class RefereeScene:
         self._seen = True
         self.frame = frame = without_absent(frame, game)
         self.game = game
+        self._touching = None
         self.touches.watch(frame)
         self.out = ball_out(self.field, frame.ball.position)
         if not self.out:
@@ -106,6 +117,13 @@ class RefereeScene:
         """How long the phase has lasted [s]."""
         return self.frame.time - self.since
 
+    @property
+    def touching(self) -> list[tuple[RobotState, RobotState]]:
+        """The pairs of a blue and a yellow robot that touch; looked for once a frame."""
+        if self._touching is None:
+            self._touching = list(_close_pairs(self.frame, _ROBOT_TOUCH_DISTANCE))
+        return self._touching
+
     def keeper(self, team: Team) -> RobotId:
         """Return a team's goalkeeper."""
         number = self.game.status(team).keeper
@@ -138,6 +156,20 @@ class RefereeScene:
         ):
             return PlayPhase.PENALTY
         return PlayPhase.PLAY if game.restart is None else PlayPhase.KICK
+
+
+def _close_pairs(frame: Frame, reach: float) -> Iterator[tuple[RobotState, RobotState]]:
+    """Find the pairs of a blue and a yellow robot with centres at most ``reach`` [m] apart."""
+    yellows = sorted(frame.opponents, key=_place)
+    places = [robot.x for robot in yellows]
+    for blue in frame.own:
+        x = blue.x
+        for yellow in yellows[bisect_left(places, x - reach) :]:
+            dx = yellow.x - x
+            if dx > reach:
+                break
+            if hypot(dx, yellow.y - blue.y) <= reach:
+                yield blue, yellow
 
 
 _PHASES = {

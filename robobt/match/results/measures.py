@@ -45,14 +45,20 @@ class Measures:
         self.kicked.clear()
         if game.in_play and truth.field.contains(truth.ball.x, truth.ball.y):
             self.in_play += 1
+        # Robots of which nothing can be found out, mostly all of them, are passed over.
+        kicking = seen is None and (
+            bool(self._outgoing) or any(command.kick_speed > 0.0 for command in commands.values())
+        )
         for team, robots in ((Team.BLUE, truth.own), (Team.YELLOW, truth.opponents)):
             for robot in robots:
+                if not (kicking or robot.ball_contact):
+                    continue
                 identity = RobotId(team, robot.id)
                 if robot.ball_contact:
                     figures = self.robots.get(identity)
                     if figures is not None and figures.go_to_ball is None:
                         figures.go_to_ball = truth.time
-                if seen is not None:
+                if not kicking:
                     continue
                 command = commands.get(identity)
                 if command is not None and command.kick_speed > 0.0:

@@ -110,6 +110,7 @@ class TeamStatistics:
         self._pending: Team | None = None
         self._restarted: Team | None = None
         self._taker: RobotId | None = None
+        self._game: GameState | None = None
         self._cards = dict.fromkeys(Team, 0)
         self._owner: Team | None = None
         self._owned = dict.fromkeys(Team, 0)
@@ -120,11 +121,9 @@ class TeamStatistics:
         self._touches.watch(frame)
         for event in events:
             self._count(event)
-        for team in Team:
-            figures, status = self._teams[team], game.status(team)
-            figures.goals = game.blue_score if team is Team.BLUE else game.yellow_score
-            figures.red_cards = status.red_cards
-        self._follow_cards(game)
+        if game is not self._game:
+            self._game = game
+            self._read(game)
         self._drive(frame)
         self._follow_restart(game)
         if game.in_play and not ball_out(frame.field, frame.ball.position):
@@ -153,11 +152,14 @@ class TeamStatistics:
         elif event.kind == EventKind.PLACEMENT_SUCCEEDED:
             figures.placements_succeeded += 1
 
-    def _follow_cards(self, game: GameState) -> None:
-        before = self._cards
-        self._cards = {team: game.status(team).yellow_cards for team in Team}
+    def _read(self, game: GameState) -> None:
+        """Take goals and cards from another state of the game."""
         for team in Team:
-            self._teams[team].yellow_cards += max(0, self._cards[team] - before[team])
+            figures, status = self._teams[team], game.status(team)
+            figures.goals = game.blue_score if team is Team.BLUE else game.yellow_score
+            figures.red_cards = status.red_cards
+            figures.yellow_cards += max(0, status.yellow_cards - self._cards[team])
+            self._cards[team] = status.yellow_cards
 
     def _drive(self, frame: Frame) -> None:
         if self._marked is not None and frame.time - self._marked[0] < _STRIDE:

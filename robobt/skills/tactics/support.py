@@ -69,15 +69,15 @@ def short_place(frame: Frame, last: Point | None, tactics: TacticsSettings) -> P
     places = np.array((x, y)) + _beside(tactics.short)
     theirs = movers_of(frame)[len(frame.own) :, :2]
     rooms = np.hypot(*(places[:, None] - theirs).T).min(axis=0, initial=_ALL_ROOM).tolist()
+    most_x, most_y = field.half_length - tactics.short_line, field.half_width - tactics.short_line
     for (px, py), room in zip(places.tolist(), rooms, strict=True):
-        inside = (
-            abs(px) < field.half_length - tactics.short_line
-            and abs(py) < field.half_width - tactics.short_line
-        )
-        if not inside:
+        if not (abs(px) < most_x and abs(py) < most_y):
             continue
-        if in_own_defense_area(field, px, py, tactics.short_area) or in_their_defense_area(
-            field, px, py, tactics.short_area
+        # Only places near a goal line can be in a defence area.
+        near = abs(px) >= field.half_length - field.defense_depth - tactics.short_area
+        if near and (
+            in_own_defense_area(field, px, py, tactics.short_area)
+            or in_their_defense_area(field, px, py, tactics.short_area)
         ):
             continue
         place = (px, py)

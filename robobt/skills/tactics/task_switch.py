@@ -88,14 +88,14 @@ class TaskSwitch(Switch, Bound[Store]):
         if game.in_play and game.penalty is None:
             return task._value_
         if game.halted:
-            return Part.HALT.value
+            return Part.HALT._value_
         ours = game.restart_team is frame.team
         first = task is Task.ATTACK
         if game.penalty is not None or game.restart is Restart.PENALTY:
             taking = first and (ours or game.penalty is frame.team)
-            return Part.TAKE_PENALTY.value if taking else Part.PENALTY.value
+            return Part.TAKE_PENALTY._value_ if taking else Part.PENALTY._value_
         if game.restart is not None and ours and first:
             placing = game.restart is Restart.BALL_PLACEMENT
-            return Part.PLACE_BALL.value if placing else Part.TAKE_RESTART.value
+            return Part.PLACE_BALL._value_ if placing else Part.TAKE_RESTART._value_
         lining_up = game.restart is Restart.KICKOFF and not (task is Task.RECEIVE and game.may_touch)
-        return Part.KICKOFF.value if lining_up else Part.DEAD_BALL.value
+        return Part.KICKOFF._value_ if lining_up else Part.DEAD_BALL._value_

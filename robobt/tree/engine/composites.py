@@ -37,7 +37,8 @@ def sequence_closures(node: Sequence, visit: Visit | None) -> tuple[Tick, Stop]:
         if node.children != children:
             replan(node, visit, children, plan)
         start = 0
-        if node.status is not RUNNING:
+        begins = node.status is not RUNNING
+        if begins:
             node.current_child = children[0] if children else None
             for step in plan:
                 child = step.child
@@ -66,7 +67,8 @@ def sequence_closures(node: Sequence, visit: Visit | None) -> tuple[Tick, Stop]:
                     status = not_a_status(child, status)
                 child.status = status
             if status is not SUCCESS:
-                if not node.memory and child is not children[-1]:
+                # Where it begins, the children behind this one have just been brought to rest.
+                if not node.memory and not begins and child is not children[-1]:
                     for later in plan[children.index(child) + 1 :]:
                         if later.child.status is not INVALID:
                             later.stop(INVALID)

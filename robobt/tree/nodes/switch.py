@@ -116,15 +116,16 @@ class Switch(Composite):
                 if chosen != before or (now is not said and now != said):
                     before, said = chosen, now
                     marks.change()
-            for place, step in enumerate(plan):
-                if place != chosen and step.child.status is not INVALID:
-                    step.stop(INVALID)
-            if chosen is None:
+            step = None if chosen is None else plan[chosen]
+            if step is None or step.child is not self.current_child:
+                for place, other in enumerate(plan):
+                    if place != chosen and other.child.status is not INVALID:
+                        other.stop(INVALID)
+            if step is None:
                 self.current_child = None
                 status = FAILURE
                 stop(status)
             else:
-                step = plan[chosen]
                 self.current_child = step.child
                 status = step.tick()
                 if status is RUNNING:

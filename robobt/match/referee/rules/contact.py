@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-from bisect import bisect_left
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from math import atan2, hypot
-from operator import attrgetter
 
 from robobt.match.referee.events import EventKind, RefereeEvent
 from robobt.match.referee.rules.base import RepeatLimit, Rule, event, team_event
@@ -13,13 +11,10 @@ from robobt.match.referee.scene import PlayPhase, RefereeScene
 from robobt.world.game import Team
 from robobt.world.geometry import Point, wrap_angle
 from robobt.world.rules import in_defense_area
-from robobt.world.state import ROBOT_RADIUS, Frame, RobotId, RobotState
+from robobt.world.state import RobotId, RobotState
 
 _EQUAL_SPEEDS = 0.3
 """Both robots are at fault in a crash when their speeds differ by less than this. Source: SSL rules [m/s]."""
-
-_ROBOT_TOUCH_DISTANCE = 1.1 * 2.0 * ROBOT_RADIUS
-"""Robots whose centres are no farther apart than this touch [m]. Source: AutoReferee."""
 
 _BRAKED = 3.0 * 0.1
 """Speed subtracted for each robot, because it may have begun to brake unseen.
@@ -37,24 +32,8 @@ _PUSH_ANGLE = 0.7
 _FOLLOWS = 0.05
 """Least speed of a pusher towards the pushed robot, which does not move towards the pusher [m/s]."""
 
-_place = attrgetter("x")
-
 Pair = tuple[int, int]
 """A pair of numbers: a blue and a yellow robot."""
-
-
-def close_pairs(frame: Frame, reach: float) -> Iterator[tuple[RobotState, RobotState]]:
-    """Find the pairs of a blue and a yellow robot with centres at most ``reach`` [m] apart."""
-    yellows = sorted(frame.opponents, key=_place)
-    places = [robot.x for robot in yellows]
-    for blue in frame.own:
-        x = blue.x
-        for yellow in yellows[bisect_left(places, x - reach) :]:
-            dx = yellow.x - x
-            if dx > reach:
-                break
-            if hypot(dx, yellow.y - blue.y) <= reach:
-                yield blue, yellow
 
 
 class Crash(Rule):
@@ -72,7 +51,7 @@ class Crash(Rule):
 
     def check(self, scene: RefereeScene) -> Iterable[RefereeEvent]:
         """Report two robots every two seconds."""
-        for blue, yellow in close_pairs(scene.frame, _ROBOT_TOUCH_DISTANCE):
+        for blue, yellow in scene.touching:
             pair, speed = (blue, yellow), _closing(blue, yellow)
             if scene.before is not None:
                 earlier = (
@@ -136,7 +115,9 @@ class Pushing(Rule):
     def check(self, scene: RefereeScene) -> Iterable[RefereeEvent]:
         """Report a push and reset its count."""
         began: dict[Pair, tuple[Point, Point]] = {}
-        for blue, yellow in close_pairs(scene.frame, _PUSHING):
+        for blue, yellow in scene.touching:
+            if hypot(yellow.x - blue.x, yellow.y - blue.y) > _PUSHING:
+                continue
             pair = blue.id, yellow.id
             starts = began[pair] = self._began.get(pair, (blue.position, yellow.position))
             for team, pusher, pushed, start in (
