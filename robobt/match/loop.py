@@ -37,6 +37,7 @@ from robobt.world.compiled import timing_compilation
 from robobt.world.game import OPEN_PLAY, GameState, Team
 from robobt.world.presence import without_absent
 from robobt.world.protocol import ReportedEvent, World
+from robobt.world.records import shared_view
 from robobt.world.rules import own_side
 from robobt.world.state import Frame, RobotId
 
@@ -257,7 +258,7 @@ class MatchLoop(Closing):
         watched = process is not None or self.measures.ticks % _CHECKED_EVERY == 0
         halted = frame.game.halted
         # Make both views before any tree is ticked, because they may share the frame's objects.
-        views = [(team, frame.seen_by(team)) for team, lineup in self._lineups.items() if lineup.players]
+        views = [(team, shared_view(frame, team)) for team, lineup in self._lineups.items() if lineup.players]
         for team, everybody in views:
             lineup, kept = self._lineups[team], self._kept[team]
             # Trees do not see a robot that has left the field, but it is still driven.

@@ -18,6 +18,7 @@ from typing import Any, NamedTuple, Protocol
 import numpy as np
 
 from robobt.world.compiled import compilable, record_dtype
+from robobt.world.game import Team
 from robobt.world.geometry import FloatArray
 from robobt.world.limits import RobotLimits
 from robobt.world.state import MIRRORED_FROM, BallState, Frame, RobotState
@@ -225,7 +226,7 @@ def movers(robots: Iterable[RobotState]) -> FloatArray:
 
 
 def movers_of(frame: Frame) -> FloatArray:
-    """Return :func:`movers` of everybody on the field, the own team first; made once for both teams."""
+    """Return :func:`movers` of everybody on the field, the own team first; made once a frame."""
     made: FloatArray | None = frame.made.get("movers")
     if made is None:
         before: Frame | None = frame.made.get(MIRRORED_FROM)
@@ -235,6 +236,21 @@ def movers_of(frame: Frame) -> FloatArray:
             made = turned(movers_of(before), len(before.own), _MOVER_PLACES)
         frame.made["movers"] = made
     return made
+
+
+def shared_view(frame: Frame, team: Team) -> Frame:
+    """Return ``frame.seen_by(team)``, where what is found for all robots is found once for both teams.
+
+    Neither frame may change from then on, unless what the view has ``made`` is cleared.
+
+    Args:
+        frame: the frame.
+        team: the team that looks.
+    """
+    view = frame.seen_by(team)
+    if view is not frame:
+        view.made[MIRRORED_FROM] = frame
+    return view
 
 
 def turned(rows: FloatArray, own: int, places: slice) -> FloatArray:

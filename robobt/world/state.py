@@ -215,7 +215,7 @@ class Frame(Derived):
         frame are the same in both views.
         """
         ball = self.ball
-        turned = Frame(
+        return Frame(
             self.time,
             self.field,
             BallState(-ball.x, -ball.y, -ball.vx, -ball.vy, ball.z, ball.vz),
@@ -227,8 +227,6 @@ class Frame(Derived):
             self.last_touch,
             self.ball_model,
         )
-        turned.made[MIRRORED_FROM] = self
-        return turned
 
     def seen_by(self, team: Team) -> Frame:
         """Return this frame from ``team``'s side; itself when it already is."""

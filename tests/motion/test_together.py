@@ -15,7 +15,7 @@ from robobt.motion.together import TeamWay, travel_together
 from robobt.testing import frame
 from robobt.world import DIVISION_B, BallState, Frame, RefereeCommand, Restart, RobotLimits, RobotState, Team
 from robobt.world.game import GameState
-from robobt.world.records import ball_of, movers, movers_of
+from robobt.world.records import ball_of, movers, movers_of, shared_view
 from robobt.world.rules import owner
 
 PLACEMENT = GameState(
@@ -63,9 +63,8 @@ def test_the_other_team_sees_the_same_robots_and_meetings() -> None:
         blue = crowd(seed)
         # A frame of its own, without anything that was found before.
         anew = crowd(seed).mirrored()
-        anew.made.clear()
         rolling = 0.8
-        for view in (blue, blue.mirrored()):
+        for view in (blue, shared_view(blue, Team.YELLOW)):
             model, field = view.ball_model, view.field
             slide, roll = model.slide_deceleration, model.roll_deceleration
             everybody = movers((*view.own, *view.opponents))
@@ -73,7 +72,15 @@ def test_the_other_team_sees_the_same_robots_and_meetings() -> None:
             met = meetings(everybody, ball_of(view.ball), rolling, slide, roll, *sizes)
             assert np.array_equal(movers_of(view), everybody)
             assert np.array_equal(meetings_of(view, rolling), met)
-        assert np.array_equal(movers_of(blue.mirrored()), movers_of(anew))
+        assert np.array_equal(movers_of(shared_view(blue, Team.YELLOW)), movers_of(anew))
+
+
+def test_a_mirrored_frame_may_change_before_anything_is_found_in_it() -> None:
+    blue = crowd(0)
+    movers_of(blue)
+    yellow = blue.mirrored()
+    yellow.own[0].x = 0.5
+    assert np.array_equal(movers_of(yellow), movers((*yellow.own, *yellow.opponents)))
 
 
 def test_who_has_the_ball_is_looked_for_once_a_frame() -> None:

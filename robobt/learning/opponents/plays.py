@@ -16,6 +16,7 @@ from robobt.tree import TreeRunner
 from robobt.world.game import OPEN_PLAY, GameState, Team
 from robobt.world.geometry import FloatArray
 from robobt.world.limits import RobotLimits
+from robobt.world.records import shared_view
 from robobt.world.state import BallState, Frame, RobotId, RobotState
 
 
@@ -69,7 +70,7 @@ class PlayedRobots:
             return
         for arena, players in enumerate(self._players):
             frame = self._frame(arenas, arena)
-            views = {team: frame.seen_by(team) for team in Team}
+            views = {team: shared_view(frame, team) for team in Team}
             for index, player in players.items():
                 view = views[player.robot.team]
                 told = player.decide(view, view.own[player.robot.number])
