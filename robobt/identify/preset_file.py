@@ -20,6 +20,9 @@ _SIGNIFICANT_DIGITS = 4
 _LIMITS = DRIVE_PARAMETERS[1:]
 """Fields of a robot's limits that are identified: all but its delay."""
 
+_RATES = frozenset({"acceleration", "braking", "side_acceleration", "side_braking"})
+"""Limits that are identified as an ellipse, which joins the axes."""
+
 _MOST_HOPS = {"first_hop": 1.0, "other_hops": 1.0, "rebound": 0.95}
 """Greatest values of a ball's hops in settings."""
 
@@ -69,6 +72,8 @@ def preset_of(identified: Identification, base: str = "default") -> dict[str, ob
         values = [robot.figures[name].value for robot in own if robot.figures[name].seen]
         if values:
             limits[name] = _digits(max(float(np.median(values)), _AT_LEAST.get(name, 0.0)))
+    if PRESETS[base].limits.separate_axes and _RATES & limits.keys():
+        limits["separate_axes"] = False
     if identified.delay.seen:
         by_wheels = _delay_of_wheels(base)
         # A team cannot distinguish late pictures from late commands and robots.

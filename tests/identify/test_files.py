@@ -215,6 +215,11 @@ def test_an_identified_delay_stands_in_place_of_all_that_the_base_has(base: str)
     assert whole == pytest.approx(0.09, abs=0.006)
 
 
+def test_identified_limits_join_the_axes_whatever_the_base_says() -> None:
+    assert not settings_from(preset_of(late(), "erforce")).limits.separate_axes
+    assert "separate_axes" not in str(preset_of(late()))
+
+
 def test_what_the_base_alone_says_is_told(
     recording: Path, found: Found, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
