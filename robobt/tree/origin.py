@@ -3,35 +3,61 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from types import FunctionType
 
 from py_trees import composites, decorators
 from py_trees.behaviour import Behaviour
 
 from robobt.tree.engine.closures import has_method_of
+from robobt.tree.leaf import Bound
 from robobt.tree.registry import Registry
 
 _PY_TREES = (composites.__name__, decorators.__name__)
-_OWN_METHODS = ("initialise", "on_running", "stop", "terminate", "tick", "update")
+_OWN_PACKAGES = ("robobt", "py_trees")
 
 
 def only_own_code(nodes: Iterable[Behaviour]) -> bool:
     """Return whether all nodes are robobt's or py_trees' own, and made from plain values or robobt's objects.
 
     In doubt the answer is False: for a function among the parameters, for a name under which another package
-    or a user's file has registered something, and for a node with a method of its own.
+    or a user's file has registered something, and for a node, or a class, with a method from elsewhere.
     """
-    return all(map(_is_own, nodes))
+    each = list(nodes)
+    methods = {cls: _methods(cls) for cls in set(map(type, each))}
+    return all(_is_own(node, methods[type(node)]) for node in each)
 
 
-def _is_own(node: Behaviour) -> bool:
+def _methods(cls: type) -> list[str] | None:
+    """Return the names of the class's methods; None if any of them is not robobt's or py_trees'."""
+    if cls.__module__ not in _PY_TREES and _package(cls) != "robobt":
+        return None
+    names: set[str] = set()
+    for base in cls.__mro__:
+        if _package(base) not in _OWN_PACKAGES:
+            continue
+        for name, value in vars(base).items():
+            if not callable(value) or isinstance(value, type):
+                continue
+            # Tests and users put functions of their own in the place of methods.
+            if _package(getattr(value, "__func__", value)) not in _OWN_PACKAGES:
+                return None
+            if isinstance(value, FunctionType) and not name.startswith("__"):
+                names.add(name)
+    return sorted(names)
+
+
+def _is_own(node: Behaviour, methods: list[str] | None) -> bool:
     cls = type(node)
-    if cls.__module__ in _PY_TREES:
-        return cls is not decorators.EternalGuard
-    if _package(cls) != "robobt":
+    if methods is None or cls is decorators.EternalGuard:
         return False
-    if not all(has_method_of(cls, node, name) for name in _OWN_METHODS if hasattr(cls, name)):
+    if not all(has_method_of(cls, node, name) for name in methods):
         return False
-    args, kwargs = getattr(node, "_given", ((), {}))
+    if not isinstance(node, Bound):
+        return True
+    if Registry.foreign:
+        # A default may name something in whose place a user has registered something else.
+        return _is_own_value(node.parameters())
+    args, kwargs = node._given
     return _is_own_value(args) and _is_own_value(kwargs)
 
 
@@ -48,5 +74,6 @@ def _is_own_value(value: object) -> bool:
     return isinstance(value, Behaviour) or (_package(type(value)) == "robobt" and not callable(value))
 
 
-def _package(cls: type) -> str:
-    return cls.__module__.partition(".")[0]
+def _package(thing: object) -> str:
+    """Return the package of a class or function."""
+    return (getattr(thing, "__module__", None) or "").partition(".")[0]

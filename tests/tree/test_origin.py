@@ -6,7 +6,7 @@ from collections.abc import Callable
 from typing import Any
 
 import pytest
-from py_trees.decorators import EternalGuard
+from py_trees.decorators import EternalGuard, Inverter
 
 from robobt.plays import PLAYS
 from robobt.skills.aim.raters import RATERS
@@ -16,6 +16,7 @@ from robobt.skills.ball.go_to_ball import GoToBall
 from robobt.skills.base import Skill
 from robobt.skills.stop import Stop
 from robobt.tree import Behaviour, Selector, Sequence, Status
+from robobt.tree.namespace import Namespace, within
 from robobt.tree.origin import only_own_code
 from robobt.tree.registry import Registry
 from robobt.tree.walk import preorder
@@ -46,12 +47,21 @@ def _patched() -> Behaviour:
     return stop
 
 
+def _with_method(node: Behaviour, name: str) -> Behaviour:
+    setattr(node, name, lambda *_: Status.RUNNING)
+    return node
+
+
 @pytest.mark.parametrize(
     "make",
     [
         Theirs,
         TheirStop,
         _patched,
+        lambda: _with_method(Stop(), "on_start"),
+        lambda: _with_method(GoToBall(), "drive_to"),
+        lambda: _with_method(Inverter("not", Stop()), "update"),
+        lambda: _with_method(Sequence("all", memory=False, children=[Stop()]), "tick"),
         lambda: GoToBall(policy=lambda _store, _approach: RobotCommand()),
         lambda: EternalGuard("guard", Stop(), condition=lambda: True),
         lambda: Selector("any", memory=False, children=[Sequence("all", memory=False, children=[Theirs()])]),
@@ -71,3 +81,17 @@ def test_a_name_that_a_user_has_registered_is_found(monkeypatch: pytest.MonkeyPa
         assert _own(SelectShot(rater="open_angle"))
     finally:
         undo()
+
+
+def test_a_method_that_a_user_has_put_into_a_class_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
+    assert _own(Stop())
+    monkeypatch.setattr(Stop, "on_running", lambda _: Status.RUNNING)
+    assert not _own(Stop())
+
+
+def test_a_name_in_the_place_of_a_default_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(Registry, "foreign", set())
+    theirs = type("TheirRater", (OpenAngle,), {"__module__": __name__})
+    with within(Namespace()):
+        RATERS.register(str(SelectShot().parameters()["rater"]))(theirs)
+        assert not _own(SelectShot())
