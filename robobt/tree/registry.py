@@ -66,7 +66,7 @@ class Registry(Generic[T]):
             raise TypeError(f'{registry}register takes a name: write @{registry}register("{meant}")')
 
         def enter(entry: T) -> T:
-            if getattr(entry, "__module__", "").partition(".")[0] != "robobt":
+            if (getattr(entry, "__module__", None) or "").partition(".")[0] != "robobt":
                 Registry.foreign.add(name)
             namespace = current_namespace()
             entries = self._entries if namespace is None else namespace.of(self)

@@ -77,6 +77,17 @@ def test_a_name_taken_twice_is_an_error_that_names_both() -> None:
     assert registry["same"] is First
 
 
+def test_a_function_of_no_module_is_registered_as_foreign() -> None:
+    def made() -> None:
+        """As in code that is executed outside any module, such as in the README's test."""
+
+    made.__module__ = None  # type: ignore[assignment]
+    registry: Registry[object] = Registry("thing")
+    registry.register("of no module")(made)
+    assert registry["of no module"] is made
+    assert "of no module" in Registry.foreign
+
+
 def test_a_thing_of_another_package_is_there_under_its_entry_points_name(install: Install) -> None:
     install("extra", {"extra_things": "class Press:\n    pass\n"}, {"Press": "extra_things:Press"})
     registry = things()
