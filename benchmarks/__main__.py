@@ -63,6 +63,7 @@ def application(only: str | None = None) -> typer.Typer:
         no_args_is_help=True,
         add_completion=False,
         pretty_exceptions_enable=False,
+        rich_markup_mode=None,
         help="How fast robobt is, and what its models are worth.",
     )
     made.callback()(global_options)

@@ -22,7 +22,9 @@ HERE = "this checkout"
 
 def train_to(
     task: Annotated[str, typer.Argument(help="What is learned: go_to_ball, score_on_goalkeeper, ...")],
-    bar: Annotated[float, typer.Option(min=0.0, max=1.0, help="Share of the held-out starts.")] = 0.95,
+    bar: Annotated[
+        float, typer.Option(min=0.0, max=1.0, help="Share of the held-out starts that have to be successes.")
+    ] = 0.95,
     preset: Annotated[str, typer.Option(help="The preset.")] = "fast",
     seeds: Annotated[int, typer.Option("--seeds", "-n", min=1, max=100, help="How many seeds.")] = 5,
     seed: Annotated[int, typer.Option(min=0, max=MAX_SEED, help="The first seed.")] = 0,
@@ -30,18 +32,18 @@ def train_to(
         Path | None, typer.Option(help="Another checkout of robobt, whose trainings alternate with ours.")
     ] = None,
     every: Annotated[
-        int | None, typer.Option(min=1, help="Steps between evaluations; the preset's own without.")
+        int | None, typer.Option(min=1, help="Steps between evaluations; by default the preset's.")
     ] = None,
     starts: Annotated[int, typer.Option(min=1, help="How many held-out starts are played.")] = 1000,
     changes: Annotated[
-        list[str] | None, typer.Option("--set", help="Change a setting in both, as steps=100000.")
+        list[str] | None, typer.Option("--set", help="Change a setting in both checkouts, as steps=100000.")
     ] = None,
     as_json: Json = False,
 ) -> None:
     """Measure the CPU seconds of a training until the bar is met on the held-out starts.
 
-    Each training is a process of its own with one thread, and its imports count. At each evaluation of the
-    preset the policy also plays the held-out starts; that time is not counted.
+    Each training is a process of its own with one thread. Its imports and its evaluations on the validation
+    starts count. At each of these the policy also plays the held-out starts; that time does not count.
 
     Keys of --json: task, bar, preset, and checkouts: a list of folder (empty for this one), median_cpu_s
     (None unless all seeds met the bar) and seeds, with seed, cpu_s, steps, reached, success and curve each.
@@ -49,6 +51,10 @@ def train_to(
     given = parse_assignments(changes or [], "--set")
     if every is not None:
         given["evaluation.every"] = every
+    from robobt.learning.training.settings import load_settings
+
+    # A wrong name is reported here, before any training starts.
+    load_settings(task, preset, given)
     folders = ["", *([str(beside.resolve())] if beside is not None else [])]
     rows: dict[str, list[dict[str, Any]]] = {folder: [] for folder in folders}
     with errors.status(f"training {escape(task)}") as status:

@@ -71,6 +71,7 @@ class Entrants:
         """
         from robobt.challenges import CHALLENGES
         from robobt.challenges.run import ChallengeEntry
+        from robobt.plays import PLAYS
         from robobt.sim.realism import realism_level
 
         if name not in CHALLENGES:
@@ -85,10 +86,16 @@ class Entrants:
         settings |= parse_assignments(self.settings or (), "--set")
         yellow = parse_play(self.yellow, "--yellow") if self.yellow else None
         plays = {given: challenge.entrants.get(given, given) for given in self.blue or ["ours"]}
-        return {
+        entries = {
             given: ChallengeEntry(name, parse_play(play, "--blue"), yellow, settings)
             for given, play in plays.items()
         }
+        for entry in entries.values():
+            if (play := entry.blue[0]).isidentifier() and play not in PLAYS:
+                rows = ", ".join(challenge.entrants)
+                there = f"no play or row is called {play!r}; rows: {rows}; plays: {PLAYS.meant(play)}"
+                raise typer.BadParameter(there, param_hint="--blue")
+        return entries
 
 
 def challenge(

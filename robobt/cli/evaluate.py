@@ -89,7 +89,7 @@ def evaluate(
             {"task": make_task(environment, 1).name, "starts": starts, "seed": seed, "results": figures}
         )
         return
-    shown = table("", "successes", "95 %", "mean time", "of the shortest", "mean return")
+    shown = table("", "successes", "95 %", "mean time", "x optimum", "mean return")
     for name, one in results.items():
         shown.add_row(
             escape(name),

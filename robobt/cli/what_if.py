@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -74,6 +75,15 @@ class Search:
     ] = None
 
 
+def _only_with(wanted: str, lacking: bool, given: Mapping[str, object]) -> None:
+    """Refuse those of the options that are given where the one that they go with is lacking."""
+    wrong = [name for name, value in given.items() if value]
+    if lacking and wrong:
+        raise typer.BadParameter(
+            f"{'goes' if len(wrong) == 1 else 'go'} with {wanted}", param_hint=", ".join(wrong)
+        )
+
+
 def what_if(
     file: Annotated[
         Path,
@@ -117,14 +127,12 @@ def what_if(
 
     if search.scan == (at is not None):
         raise typer.BadParameter("give either --at or --scan", param_hint="--at, --scan")
-    if search.scan and (plays.blue or plays.yellow or record is not None):
-        raise typer.BadParameter("goes with --at", param_hint="--blue, --yellow, --record")
+    _only_with("--at", search.scan, {"--blue": plays.blue, "--yellow": plays.yellow, "--record": record})
     if not search.scan and search.out is not None:
         raise typer.BadParameter("goes with --scan; --record is for --at", param_hint="--out")
-    if not search.scan and (search.begin or search.end is not None):
-        raise typer.BadParameter("goes with --scan", param_hint="--from, --to")
-    if not search.scan and (search.every, search.moments) != (Search.every, Search.moments):
-        raise typer.BadParameter("goes with --scan", param_hint="--every, --moments")
+    scanning: dict[str, object] = {"--from": search.begin, "--to": search.end is not None}
+    scanning |= {"--every": search.every != Search.every, "--moments": search.moments != Search.moments}
+    _only_with("--scan", not search.scan, scanning)
     if team is not None:
         one_of([team], ["blue", "yellow"], "--team")
     if record is not None:

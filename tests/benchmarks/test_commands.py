@@ -126,6 +126,15 @@ def test_trainings_are_timed_beside_another_checkout() -> None:
             assert (checkout["median_cpu_s"] is not None) == reached
 
 
+def test_an_unknown_task_is_told_before_a_training_starts() -> None:
+    told = run("train_to", "go_to_bal", code=1)
+    assert "no task is called 'go_to_bal'; did you mean go_to_ball or" in " ".join(told.output.split())
+
+
+def test_help_keeps_brackets() -> None:
+    assert "robobt[sb3]" in help_of("ppo")
+
+
 def test_an_unknown_switch_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     told = run("train", "shoot", "--only", "magic", code=1)

@@ -75,7 +75,8 @@ def test_what_does_not_fit_is_refused() -> None:
     assert "no challenge is called 'passin'" in run("challenge", "passin", code=2)
     assert "needs a file of results" in run("challenge", "table", code=2)
     assert "is for 'robobt challenge table'" in run("challenge", "passing", "--check", code=2)
-    assert "no play is called 'nobody'" in run("challenge", "passing", "--blue", "nobody", code=1)
+    unknown = run("challenge", "passing", "--blue", "nobody", code=2)
+    assert "no play or row is called 'nobody'; rows: ours, november, script, chance" in unknown
 
 
 @pytest.mark.parametrize(

@@ -117,9 +117,10 @@ def test_a_match_is_searched_and_each_moment_has_a_replay(small: Path) -> None:
     [
         ((), "give either --at or --scan"),
         (("--scan", "--at", 1.0), "give either --at or --scan"),
-        (("--scan", "--blue", "stand_still"), "goes with --at"),
+        (("--scan", "--blue", "stand_still"), "--blue: goes with --at"),
         (("--at", 1.0, "--out", "moments"), "goes with --scan"),
-        (("--at", 1.0, "--to", 2.0), "goes with --scan"),
+        (("--at", 1.0, "--to", 2.0), "--to: goes with --scan"),
+        (("--at", 1.0, "--from", 0.5, "--to", 2.0), "--from, --to: go with --scan"),
         (("--at", 1.0, "--every", 0.2), "goes with --scan"),
         (("--at", 1.0, "--moments", 2), "goes with --scan"),
         (("--at", 1.0, "--team", "red"), "must be one of 'blue', 'yellow', not 'red'"),

@@ -85,6 +85,8 @@ def own(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> str:
 
 def test_a_task_has_one_docstring_whether_it_is_read_or_imported() -> None:
     assert all(TASKS.documentation(name) == inspect.getdoc(TASKS[name]) for name in TASKS)
+    # The first line is what a terminal shows.
+    assert all("`" not in TASKS.documentation(name).partition("\n")[0] for name in TASKS)
 
 
 def test_its_parts_decide_what_is_seen_earned_and_ended(own: str) -> None:

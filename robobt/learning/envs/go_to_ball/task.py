@@ -69,7 +69,10 @@ _GO_TO_BALL_JUDGING, _GO_TO_BALL_TERMS = record_dtype(_GoToBallJudging), record_
 
 
 class GoToBallTask(ArenaTask):
-    """Drive to the ball; :class:`~robobt.learning.envs.GoToBallEnv` is the specification."""
+    """Drive to the ball.
+
+    :class:`~robobt.learning.envs.GoToBallEnv` is the specification.
+    """
 
     terms = _GO_TO_BALL_TERMS
     Settings = GoToBallSettings
@@ -180,7 +183,10 @@ class GoToBallTask(ArenaTask):
 
 
 class GoToBallAmongRobotsTask(GoToBallTask):
-    """Drive to the ball among others; :class:`~robobt.learning.envs.GoToBallAmongRobotsEnv` specifies it."""
+    """Drive to the ball among other robots.
+
+    :class:`~robobt.learning.envs.GoToBallAmongRobotsEnv` is the specification.
+    """
 
     Settings = GoToBallAmongRobotsSettings
 

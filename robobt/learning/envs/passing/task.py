@@ -50,7 +50,10 @@ class PassingSettings(SoccerSettings):
 
 
 class PassingTask(SoccerTask):
-    """Play passes that the passing challenge counts; see :class:`PassingSettings`."""
+    """Pass to a team-mate past an opponent, as the passing challenge of 2025 counts passes.
+
+    :class:`PassingSettings` is the specification.
+    """
 
     Settings = PassingSettings
     settings: PassingSettings

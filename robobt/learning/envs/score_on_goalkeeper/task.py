@@ -51,7 +51,10 @@ _SCORE_JUDGING, _SCORE_TERMS = record_dtype(_ScoreJudging), record_dtype(ScoreTe
 
 
 class ScoreOnGoalkeeperTask(ArenaTask):
-    """Get the ball and score; :class:`~robobt.learning.envs.ScoreOnGoalkeeperEnv` is the specification."""
+    """Get the ball and score on a goalkeeper.
+
+    :class:`~robobt.learning.envs.ScoreOnGoalkeeperEnv` is the specification.
+    """
 
     terms = _SCORE_TERMS
     Settings = ScoreOnGoalkeeperSettings

@@ -67,7 +67,10 @@ _SHOOT_JUDGING, _ACTION, _SHOOT_TERMS = (
 
 
 class ShootTask(ArenaTask):
-    """Turn and kick the ball into the goal; see :class:`~robobt.learning.envs.ShootTowardsGoalEnv`."""
+    """Turn and kick the ball into the goal.
+
+    :class:`~robobt.learning.envs.ShootTowardsGoalEnv` is the specification.
+    """
 
     terms = _SHOOT_TERMS
     Settings = ShootSettings

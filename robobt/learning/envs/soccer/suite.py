@@ -27,7 +27,7 @@ _OPEN_PLAY_STARTS = SoccerStarts(ball_speed=(0.0, 1.0))
 
 
 class ScoreOnGoalkeeperAndDefendersSettings(SoccerSettings):
-    """Get the ball and score past a one-robot wall and a goalkeeper.
+    """Get the ball and score past a wall of one robot and a goalkeeper.
 
     All robots start in the attacked half; in half of the episodes the attacker has the ball. Success is a
     goal. A ball that is out, with the goalkeeper or held by yellow for 8 periods, or an attacker in the
@@ -40,7 +40,7 @@ class ScoreOnGoalkeeperAndDefendersSettings(SoccerSettings):
 
 
 class ScoreOnGoalkeeperAndTwoDefendersSettings(ScoreOnGoalkeeperAndDefendersSettings):
-    """Like Score-On-Goalkeeper-And-Defender, with a second defender that goes for the ball at up to 2 m/s."""
+    """Get the ball and score past a wall of one, a goalkeeper and a defender that presses at up to 2 m/s."""
 
     yellow: tuple[Role, ...] = (GOALKEEPER, "wall", "press")
 

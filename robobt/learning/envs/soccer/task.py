@@ -31,7 +31,9 @@ _NEW_MEMORY = fresh(REWARD_MEMORY, to_goal=np.nan, to_ball=np.nan)
 
 
 class SoccerTask(ArenaTask):
-    """Any mix of learned and scripted robots; :mod:`robobt.learning.envs.soccer.suite` has such tasks.
+    """Play with any mix of learned and scripted robots.
+
+    :mod:`robobt.learning.envs.soccer.suite` has such tasks.
 
     An arena's observations and actions are those of its learners, concatenated;
     :class:`~robobt.learning.envs.per_robot.PerRobot` has a row for each learner instead.
