@@ -15,6 +15,7 @@ from robobt.learning.training.preset_files import merged
 from robobt.learning.training.run_folder import RESULT, load_run
 from robobt.learning.training.settings import evaluated_on
 from robobt.learning.training.teachers import TEACHERS, TeacherError, playing
+from robobt.models.file import UnknownModelError
 from robobt.models.policy import load_policy
 
 _ARENAS = 128
@@ -34,13 +35,17 @@ def trained_policy(source: str) -> tuple[TaskSettings, Policy]:
     Raises:
         RunFolderError: the folder holds no run that has ended.
         ModelError: the model cannot be used.
-        JudgingError: the model is no policy, or its card does not say which task it was trained for.
+        JudgingError: there is neither run nor model, the model is no policy, or its card does not say which
+            task it was trained for.
     """
     if Path(source).is_dir():
         result = load_run(best_seed(Path(source)))
         trained = result.settings.environment
         return (evaluated_on(result.settings) if trained.two_alike else trained), policy_of(result.actor)
-    policy = load_policy(source, kind="policy")
+    try:
+        policy = load_policy(source, kind="policy")
+    except UnknownModelError as error:
+        raise JudgingError(f"{error}, or the folder of a training run") from error
     settings = policy.card.training.get("settings")
     task = settings.get("task") if isinstance(settings, dict) else None
     if not isinstance(settings, dict) or not isinstance(task, str):

@@ -241,6 +241,8 @@ def check_task(folder: Path, settings: TrainSettings, begun_with: str) -> None:
 def load_run(folder: str | Path) -> TrainResult:
     """Load a finished run."""
     path = Path(folder)
+    if not path.exists():
+        raise RunFolderError(f"{path}: there is no such folder")
     if path.is_dir() and not (path / RESULT).exists():
         raise RunFolderError(f"{path}: not the folder of a run that has ended: there is no {RESULT}")
     try:

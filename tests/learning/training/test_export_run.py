@@ -100,6 +100,8 @@ def test_of_several_seeds_the_best_is_taken(run: Path, tmp_path: Path) -> None:
 def test_a_folder_that_holds_no_finished_run_is_one_error(tmp_path: Path) -> None:
     with pytest.raises(RunFolderError, match="not the folder of a run that has ended"):
         export_run(tmp_path)
+    with pytest.raises(RunFolderError, match="there is no such folder"):
+        export_run(tmp_path / "nothing")
 
 
 @pytest.mark.parametrize("name", ["bad name", "../mine", "mine.pt", "x" * 65])
