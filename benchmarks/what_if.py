@@ -217,7 +217,7 @@ def find_mistakes(
         logged = recorded(folder, changed(six_a_side(at + 6.0), play), seed)
         began = time.process_time()
         played = Branches(logged)
-        moments = scan(logged, Team.BLUE, played, every=1.0, count=3, trials=8, first=1, seed=seed)
+        moments = scan(logged, Team.BLUE, played, every=1.0, count=5, trials=24, first=3, seed=seed)
         played.close()
         taken = time.process_time() - began
         near = [abs(one.time - at) <= FOUND_WITHIN for one in moments]

@@ -17,12 +17,6 @@ from robobt.world.state import RobotId
 _KEPT = 4
 """Each round of the search keeps one in this many decisions, and plays twice as many branches of them."""
 
-_UNCHANGED = 3
-"""Least number of branches of a round in which nothing is changed, which all decisions of a moment share."""
-
-_SHARED = 4.0
-"""Branches of a decision that say as much about it as what its moment's decisions have in common."""
-
 _FIRST_FRESH = 1_000_000
 """Number of the first branch of the final figures; the search has smaller ones."""
 
@@ -54,36 +48,16 @@ class Found:
 
 
 @dataclass(slots=True)
-class _Moment:
-    """A moment, and the values of its branches in which nothing is changed and of those of each decision."""
+class _Arm:
+    """A decision at a moment, and the gains of its branches so far."""
 
     tick: int
-    arms: list[_Arm]
-    unchanged: list[float] = field(default_factory=list)
+    decision: BallDecision
+    gains: list[float] = field(default_factory=list)
 
     @property
     def gain(self) -> float:
-        """Mean gain of the decisions: that of a moment at which the worst of all was decided is high."""
-        return fmean(arm.value for arm in self.arms) - fmean(self.unchanged)
-
-
-@dataclass(slots=True, eq=False)
-class _Arm:
-    """A decision at a moment, and the values of its branches so far."""
-
-    decision: BallDecision
-    values: list[float] = field(default_factory=list)
-
-    @property
-    def value(self) -> float:
-        return fmean(self.values)
-
-
-def _shrunk_gain(moment: _Moment, arm: _Arm) -> float:
-    """Return the gain by a decision, drawn towards the mean of its moment while it has few branches."""
-    weight = len(arm.values) / (len(arm.values) + _SHARED)
-    own = arm.value - fmean(moment.unchanged)
-    return moment.gain + weight * (own - moment.gain)
+        return fmean(self.gains)
 
 
 def moments_of(
@@ -136,10 +110,9 @@ def scan(
     """Return the moments at which another decision of ``team`` would have been worth most, the best first.
 
     Every decision at every moment is played in a few branches. The best quarter gets twice as many, and so on
-    (successive halving). A few branches say more about a moment than about each of its decisions, so the gain
-    of a decision is drawn towards the mean gain of its moment's (a hierarchical estimate). The figures of
-    those that are left come from fresh branches, because the best of many has also been lucky; those of the
-    first come from fresh ones once more, because the first of a few has been, too.
+    (successive halving). The figures of those that are left come from fresh branches, because the best of
+    many has also been lucky; those of the first come from fresh ones once more, because the first of a few
+    has been, too.
 
     Args:
         logged: the match.
@@ -159,11 +132,12 @@ def scan(
         The moments in the order of their figures; the first one's were drawn again after that.
     """
     follow = [team.other] if logged.known else list(Team)
-    moments = [
-        _Moment(tick, [_Arm(decision) for decision in decisions_of(logged.recording.frame(tick), robot)])
-        for tick, robot in moments_of(logged, team, every, begin, end)
+    moments = moments_of(logged, team, every, begin, end)
+    arms = [
+        _Arm(tick, decision)
+        for tick, robot in moments
+        for decision in decisions_of(logged.recording.frame(tick), robot)
     ]
-    arms = [(moment, arm) for moment in moments for arm in moment.arms]
     done = 0
     rounds = _rounds(len(arms), first, 4 * count)
     planned = sum(size * number for size, number in rounds)
@@ -175,19 +149,19 @@ def scan(
         on_branch(done, max(planned, done))
 
     for size, number in rounds:
-        arms = sorted(arms, key=lambda pair: -_shrunk_gain(*pair))[:size] if next_trial else arms
+        arms = sorted(arms, key=lambda arm: -arm.gain)[:size] if next_trial else arms
         numbers = range(next_trial, next_trial + number)
         _play_round(branches, arms, team, seed, numbers, follow, tell)
-        next_trial += max(number, _UNCHANGED)
-    chosen: list[tuple[_Moment, _Arm]] = []
-    for moment, arm in sorted(arms, key=lambda pair: -_shrunk_gain(*pair)):
-        time = logged.recording.times[moment.tick]
+        next_trial += number
+    chosen: list[_Arm] = []
+    for arm in sorted(arms, key=lambda arm: -arm.gain):
+        time = logged.recording.times[arm.tick]
         if len(chosen) < count and all(
-            abs(logged.recording.times[one.tick] - time) >= apart for one, _ in chosen
+            abs(logged.recording.times[one.tick] - time) >= apart for one in chosen
         ):
-            chosen.append((moment, arm))
+            chosen.append(arm)
     fresh = range(_FIRST_FRESH, _FIRST_FRESH + trials)
-    found = [(_figures(branches, pair, team, seed, fresh, follow, tell), pair) for pair in chosen]
+    found = [(_figures(branches, arm, team, seed, fresh, follow, tell), arm) for arm in chosen]
     found.sort(key=lambda pair: -pair[0].gain)
     if len(found) > 1:
         numbers, best = range(fresh.stop, fresh.stop + trials), found[0][1]
@@ -206,40 +180,36 @@ def _rounds(arms: int, first: int, enough: int) -> list[tuple[int, int]]:
 
 def _play_round(
     branches: Branches,
-    arms: Sequence[tuple[_Moment, _Arm]],
+    arms: Sequence[_Arm],
     team: Team,
     seed: int,
     numbers: range,
     follow: Collection[Team],
     tell: Callable[[], None],
 ) -> None:
-    by_tick: dict[int, list[tuple[_Moment, _Arm]]] = {}
-    for moment, arm in arms:
-        by_tick.setdefault(moment.tick, []).append((moment, arm))
-    unchanged = range(numbers.start, numbers.start + max(len(numbers), _UNCHANGED))
+    by_tick: dict[int, list[_Arm]] = {}
+    for arm in arms:
+        by_tick.setdefault(arm.tick, []).append(arm)
     for tick, here in sorted(by_tick.items()):
         branches.begin(tick)
-        here[0][0].unchanged += [
-            branches.play(seed, number, follow=follow).value(team) for number in unchanged
-        ]
-        for _, arm in here:
-            for number in numbers:
+        unchanged = [branches.play(seed, number, follow=follow).value(team) for number in numbers]
+        for arm in here:
+            for number, before in zip(numbers, unchanged, strict=True):
                 branch = branches.play(seed, number, follow=follow, decision=arm.decision)
-                arm.values.append(branch.value(team))
+                arm.gains.append(branch.value(team) - before)
                 tell()
 
 
 def _figures(
     branches: Branches,
-    chosen: tuple[_Moment, _Arm],
+    arm: _Arm,
     team: Team,
     seed: int,
     numbers: range,
     follow: Collection[Team],
     tell: Callable[[], None],
 ) -> Found:
-    moment, arm = chosen
-    branches.begin(moment.tick)
+    branches.begin(arm.tick)
     unchanged: list[Branch] = []
     changed: list[Branch] = []
     for number in numbers:
@@ -252,8 +222,8 @@ def _figures(
     mean = with_it.gain.mean
     gains = [one.value(team) - other.value(team) for one, other in zip(changed, unchanged, strict=True)]
     typical = min(range(len(numbers)), key=lambda i: abs(gains[i] - mean))
-    time = float(branches.logged.recording.times[moment.tick])
-    return Found(time, moment.tick, arm.decision, without, with_it, numbers[typical])
+    time = float(branches.logged.recording.times[arm.tick])
+    return Found(time, arm.tick, arm.decision, without, with_it, numbers[typical])
 
 
 def _keeper(logged: LoggedMatch, team: Team) -> int | None:
