@@ -7,6 +7,7 @@ from types import FunctionType
 
 from py_trees import composites, decorators
 from py_trees.behaviour import Behaviour
+from pydantic import BaseModel
 
 from robobt.tree.engine.closures import has_method_of
 from robobt.tree.leaf import Bound
@@ -70,8 +71,12 @@ def _is_own_value(value: object) -> bool:
         return all(map(_is_own_value, value))
     if isinstance(value, Mapping):
         return all(map(_is_own_value, (*value.keys(), *value.values())))
-    # Nodes are looked at for themselves.
-    return isinstance(value, Behaviour) or (_package(type(value)) == "robobt" and not callable(value))
+    if isinstance(value, Behaviour):
+        # Nodes are looked at for themselves.
+        return True
+    if _package(type(value)) != "robobt" or callable(value):
+        return False
+    return not isinstance(value, BaseModel) or all(map(_is_own_value, vars(value).values()))
 
 
 def _package(thing: object) -> str:

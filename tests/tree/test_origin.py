@@ -9,8 +9,10 @@ import pytest
 from py_trees.decorators import EternalGuard, Inverter
 
 from robobt.plays import PLAYS
+from robobt.skills.aim.pass_rater import PassRater
 from robobt.skills.aim.raters import RATERS
 from robobt.skills.aim.raters.open_angle import OpenAngle
+from robobt.skills.aim.select_pass import SelectPass
 from robobt.skills.aim.select_shot import SelectShot
 from robobt.skills.ball.go_to_ball import GoToBall
 from robobt.skills.base import Skill
@@ -83,6 +85,12 @@ def test_a_name_that_a_user_has_registered_is_found(monkeypatch: pytest.MonkeyPa
         assert _own(SelectShot(rater="open_angle"))
     finally:
         undo()
+
+
+def test_a_rater_within_another_is_found() -> None:
+    theirs = type("TheirRater", (OpenAngle,), {"__module__": __name__})
+    assert _own(SelectPass(rater=PassRater()))
+    assert not _own(SelectPass(rater=PassRater(shot_rater=theirs())))
 
 
 def test_a_method_that_a_user_has_put_into_a_class_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
