@@ -17,7 +17,7 @@ from robobt.match.capture import MatchCapture
 from robobt.match.checkpoint import Checkpoint
 from robobt.match.ends import EndJudge, Outcome
 from robobt.match.lineup import Lineup, leave
-from robobt.match.players import Player, make_players, run_tree, shut_down
+from robobt.match.players import Driver, Player, make_players, run_tree, shut_down
 from robobt.match.recording.capture import Capture
 from robobt.match.referee.events import RefereeEvent
 from robobt.match.refereeing import RefereeFactory, own_referee
@@ -170,6 +170,11 @@ class MatchLoop(Closing):
         before.shutdown()
         self._captured.change_tree(before, player, play)
 
+    def set_driver(self, player: Player, driver: Driver | None) -> None:
+        """Let ``driver`` move the robot of ``player`` in place of its tree, or with None its tree again."""
+        player.driver = driver
+        self._only_own_code = self._check_code()
+
     def close(self) -> None:
         """Close the referee, finish the recording and shut the trees down; ``with`` does it too."""
         let_go()
@@ -276,7 +281,7 @@ class MatchLoop(Closing):
                 player = lineup.players.get(me.id)
                 if player is None or me.id in leaving:
                     continue
-                if process is None or player.runner.own:
+                if process is None or (player.runner.own and player.driver is None):
                     command = player.decide(view, me)
                 else:
                     try:
@@ -298,8 +303,8 @@ class MatchLoop(Closing):
         return commands
 
     def _check_code(self) -> bool:
-        """Return whether only robobt's own code runs in all trees."""
-        return all(player.runner.own for player in self.players)
+        """Return whether only robobt's own code runs in all trees, which move all robots."""
+        return all(player.runner.own and player.driver is None for player in self.players)
 
     def _mend(self, kept: KeptView, who: RobotId | Team) -> None:
         """Restore a team's view, and warn of changes by a robot, or by one of a team's."""

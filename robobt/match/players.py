@@ -5,7 +5,7 @@ from __future__ import annotations
 import logging
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, TypeAlias
 
 from robobt.config.errors import one_line, short_repr, text_of
 from robobt.config.process import users_code
@@ -19,6 +19,9 @@ from robobt.world.game import Team
 from robobt.world.state import Frame, RobotId, RobotState
 
 _log = logging.getLogger(__name__)
+
+Driver: TypeAlias = Callable[[Frame, RobotState], RobotCommand]
+"""Decides for a robot in place of its tree, from its team's view."""
 
 
 @dataclass(slots=True, repr=False)
@@ -36,7 +39,7 @@ class Player:
     store: Store
     problem: str = ""
     names: Namespace | None = None
-    driver: Callable[[Frame, RobotState], RobotCommand] | None = None
+    driver: Driver | None = None
     failing: str | None = ""
 
     def __repr__(self) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from math import degrees
 from typing import Any
 
@@ -12,7 +12,7 @@ from pydantic import ValidationError
 from robobt.config.errors import RobobtError, message_of
 from robobt.config.validation import first_problem
 from robobt.match.loop import MatchLoop
-from robobt.match.players import Player
+from robobt.match.players import Driver, Player
 from robobt.match.referee.by_hand import Order, give
 from robobt.match.referee.referee import Referee
 from robobt.match.scenario.robots import RobotSetup
@@ -24,13 +24,9 @@ from robobt.tree.namespace import within
 from robobt.tree.parameters import Parameter, check_parameters, parameters_of
 from robobt.tree.recording import node_ids
 from robobt.tree.walk import preorder
-from robobt.world.command import RobotCommand
 from robobt.world.game import Team
 from robobt.world.geometry import wrap_angle
-from robobt.world.state import Frame, RobotId, RobotState
-
-Driver = Callable[[Frame, RobotState], RobotCommand]
-"""Decides a robot's command from its team's view."""
+from robobt.world.state import RobotId
 
 
 class SteeringError(RobobtError, ValueError):
@@ -139,7 +135,7 @@ class Steering:
         player = self.player(robot)
         if driver is not None:
             player.runner.stop()
-        player.driver = driver
+        self._match.set_driver(player, driver)
         self._note("driven by hand" if driver is not None else "driven by its tree", robot)
 
     def player(self, robot: RobotId) -> Player:

@@ -11,7 +11,7 @@ from robobt.match import MatchLoop
 from robobt.match.recording import load_recording
 from robobt.match.scenario.scenario import Scenario, load_scenario, scenario_from
 from robobt.match.steering import Steering, SteeringError
-from robobt.world import RobotId, Team
+from robobt.world import Frame, RobotCommand, RobotId, RobotState, Team
 from robobt.world.game import RefereeCommand
 from robobt.world.protocol import WrappedWorld
 from robobt.worlds import sim_world
@@ -61,6 +61,26 @@ def test_a_robot_that_was_taken_off_is_not_there_until_it_is_put_back(match: Mat
     match.tick()
     (keeper,) = match.world.truth().opponents
     assert keeper.x == pytest.approx(4.0, abs=0.05)
+
+
+def test_what_a_driver_changes_in_the_frame_is_restored(
+    match: MatchLoop, caplog: pytest.LogCaptureFixture
+) -> None:
+    seen: list[Frame] = []
+
+    def drive(view: Frame, me: RobotState) -> RobotCommand:
+        seen.append(view)
+        view.ball.x += 1.0
+        return RobotCommand()
+
+    steering = Steering(match)
+    steering.drive(STRIKER, drive)
+    for _ in range(3):
+        match.tick()
+    assert [view.ball.x for view in seen] == pytest.approx([match.world.truth().ball.x] * 3, abs=0.1)
+    assert caplog.text.count("changed the frame") == 1
+    steering.drive(STRIKER, None)
+    match.tick()
 
 
 @pytest.mark.parametrize("place", [(20.0, 0.0), (0.0, -9.0), (float("nan"), 0.0)])
