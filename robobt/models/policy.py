@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import warnings
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
@@ -154,6 +155,9 @@ class _TorchScript:
     """A frozen TorchScript module."""
 
     def __init__(self, file: ModelFile) -> None:
+        # MKL, which multiplies torch's matrices, adds in an order that suits the processor, unless told to use the
+        # order that all processors can. It asks once, before its first product.
+        os.environ.setdefault("MKL_CBWR", "COMPATIBLE")
         with _telling("needs torch to run (pip install torch)"):
             import torch
 

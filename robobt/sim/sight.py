@@ -202,9 +202,9 @@ def visible_part(
 
 def _outline(towards: FloatArray) -> FloatArray:
     """Return points of the unit disc that faces ``towards``, evenly spread, (n, 3)."""
-    ray = towards / np.linalg.norm(towards)
+    ray = towards / hypot(*towards.tolist())
     aside = np.array((-ray[1], ray[0], 0.0))
-    width = float(np.linalg.norm(aside))
+    width = hypot(ray[0], ray[1])
     aside = np.array((1.0, 0.0, 0.0)) if width < 1e-9 else aside / width
     up = np.cross(ray, aside)
     spread: FloatArray = _DISC[:, :1] * aside + _DISC[:, 1:] * up
@@ -225,8 +225,9 @@ def _crosses(starts: FloatArray, ends: FloatArray, robot: Sequence[float], face:
     """Return which segments, seen from above, cross a robot: a disc cut flat at the front."""
     c, s = cos(robot[2]), sin(robot[2])
     turn = np.array(((c, -s), (s, c)))
-    begin = (starts[:, :2] - np.array(robot[:2])) @ turn
-    along = (ends[:, :2] - starts[:, :2]) @ turn
+    # No @: BLAS multiplies in an order that depends on the processor.
+    begin = np.einsum("ij,jk->ik", starts[:, :2] - np.array(robot[:2]), turn)
+    along = np.einsum("ij,jk->ik", ends[:, :2] - starts[:, :2], turn)
     # The part of each segment within the disc, 0 to 1.
     a = np.maximum((along**2).sum(axis=1), 1e-18)
     b = (begin * along).sum(axis=1)

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import io
+import json
 import os
+import subprocess
 import sys
 import warnings
 import zipfile
@@ -149,6 +151,63 @@ def test_it_runs_on_one_thread_and_leaves_torchs_number_of_threads_alone(
         assert torch.get_num_threads() == 2
     finally:
         torch.set_num_threads(before)
+
+
+def test_mkl_is_asked_for_the_order_that_all_processors_can(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.delenv("MKL_CBWR", raising=False)
+    load_policy(by_hand(tmp_path, network()))
+    assert os.environ["MKL_CBWR"] == "COMPATIBLE"
+
+
+def test_an_order_of_the_users_stays(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.setenv("MKL_CBWR", "AUTO")
+    load_policy(by_hand(tmp_path, network()))
+    assert os.environ["MKL_CBWR"] == "AUTO"
+
+
+ANSWERS = """
+import hashlib, json, sys
+import numpy as np
+from robobt.models.policy import load_policy
+found = {}
+for path in sys.argv[1:]:
+    policy = load_policy(path)
+    size = policy.card.observation.size
+    inputs = np.random.default_rng(1).uniform(-1.0, 1.0, (20, size)).astype(np.float32)
+    answers = np.stack([policy(row) for row in inputs])
+    found[policy.card.name] = hashlib.sha256(answers.tobytes()).hexdigest()[:8]
+print(json.dumps(found))
+"""
+HASHES = {
+    "any_number_imitated": "2dcd4c2e",
+    "duel_ppo": "7d9e0d00",
+    "go_to_ball_among_robots_ppo": "394debab",
+    "go_to_ball_ddpg": "9043f855",
+    "save_ppo": "1d2ecbd3",
+    "score_on_defender_ppo": "0f2201a3",
+    "score_on_goalkeeper_ppo": "c7ebc6de",
+    "score_on_goalkeeper_robust": "223673d0",
+    "score_on_two_defenders_ppo": "2ce220fb",
+    "shoot_ddpg": "ff248446",
+    "shoot_robust": "5f2ca296",
+    "shot_expected": "d7447d8b",
+    "shot_nn": "2e3e2505",
+    "shot_nn_strong": "ae5b4add",
+    "small3v3_ppo": "71432d71",
+}
+SHIPPED = sorted((Path(__file__).parents[2] / "models").glob("*.pt"))
+
+
+@pytest.mark.slow
+def test_shipped_networks_answer_the_same_on_every_processor() -> None:
+    """The hashes were taken on an AMD processor with torch 2.13, and compared on one of Intel's with 2.11."""
+    without = {name: value for name, value in os.environ.items() if name != "MKL_CBWR"}
+    ran = subprocess.run(
+        [sys.executable, "-c", ANSWERS, *map(str, SHIPPED)], capture_output=True, text=True, check=True, env=without
+    )
+    assert json.loads(ran.stdout) == HASHES
 
 
 def test_a_loaded_network_takes_no_gradients(files: dict[str, Path]) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import warnings
 from pathlib import Path
 
@@ -49,6 +50,9 @@ def train(
         TrainError: the weights became NaN.
         OSError: a file cannot be written.
     """
+    # Policies that a run loads, those of opponents for example, would set MKL to the order of additions that all
+    # processors can, which takes twice as long for a batch.
+    os.environ.setdefault("MKL_CBWR", "AUTO")
     clock = RunClock()
     if problem is None:
         problem = problem_for(settings)
