@@ -154,6 +154,7 @@ def _watch(address: str, seconds: float, log: Path) -> None:
 
 def _show(found: Identification) -> None:
     """Print the field's figures, a row each, and the robots', a row a figure."""
+    from robobt.identify.estimate import short
     from robobt.world.game import Team
 
     listed = table(f"from {found.seconds:.0f} s of play", "value", "95 % interval", "events")
@@ -162,8 +163,8 @@ def _show(found: Identification) -> None:
         if " " in name and not name.startswith("camera "):
             continue
         if figure.seen:
-            value = f"{figure.value:.4g} {figure.unit}".rstrip()
-            listed.add_row(name, value, f"{figure.low:.4g} to {figure.high:.4g}", str(figure.count))
+            value = f"{short(figure.value)} {figure.unit}".rstrip()
+            listed.add_row(name, value, f"{short(figure.low)} to {short(figure.high)}", str(figure.count))
         else:
             listed.add_row(name, "not seen enough", "", str(figure.count))
     console.print(listed)
@@ -175,12 +176,12 @@ def _show(found: Identification) -> None:
 
 
 def _show_robots(team: Team, robots: Sequence[RobotEstimate]) -> None:
+    from robobt.identify.estimate import short
     from robobt.identify.robots import UNITS
 
     listed = table(team.value, *[str(robot.robot.number) for robot in robots])
     for name, unit in UNITS.items():
         figures = [robot.figures[name] for robot in robots]
-        # What is less than a tenth of a thousandth is 0, and so is -0.
-        values = [f"{round(it.value, 4) + 0.0:.3g}" if it.seen else "-" for it in figures]
+        values = [short(it.value, digits=3) if it.seen else "-" for it in figures]
         listed.add_row(f"{name}, {unit}" if unit else name, *values)
     console.print(listed)

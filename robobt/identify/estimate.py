@@ -45,7 +45,12 @@ class Estimate:
         if not self.seen:
             return "not seen enough"
         unit = f" {self.unit}" if self.unit else ""
-        return f"{self.value:.4g} ({self.low:.4g} to {self.high:.4g}){unit}"
+        return f"{short(self.value)} ({short(self.low)} to {short(self.high)}){unit}"
+
+
+def short(value: float, digits: int = 4) -> str:
+    """Return a value with few digits; less than half of 0.0001 is 0, which has no sign."""
+    return f"{round(value, 4) + 0.0:.{digits}g}"
 
 
 def unseen(count: int = 0, unit: str = "") -> Estimate:

@@ -7,6 +7,7 @@ from functools import cache
 import numpy as np
 import pytest
 
+from robobt.identify.estimate import Estimate
 from robobt.identify.noise import identify_noise
 from robobt.identify.observations import Observations
 from robobt.identify.opponents import identify_opponent
@@ -84,6 +85,10 @@ def test_a_limit_that_was_never_met_is_not_seen_enough() -> None:
     figure = own().figures["max_turn"]
     assert not figure.seen
     assert figure.text() == "not seen enough"
+
+
+def test_what_rounding_leaves_of_zero_reads_as_zero() -> None:
+    assert Estimate(1.4e-15, -2e-15, 0.012, 40, True, "m").text() == "0 (0 to 0.012) m"
 
 
 @pytest.mark.parametrize(
