@@ -155,8 +155,8 @@ class _TorchScript:
     """A frozen TorchScript module."""
 
     def __init__(self, file: ModelFile) -> None:
-        # MKL, which multiplies torch's matrices, adds in an order that suits the processor, unless told to use the
-        # order that all processors can. It asks once, before its first product.
+        # MKL, which multiplies torch's matrices, adds in an order that suits the processor unless this names
+        # the order that all processors can. It looks once, before its first product.
         os.environ.setdefault("MKL_CBWR", "COMPATIBLE")
         with _telling("needs torch to run (pip install torch)"):
             import torch

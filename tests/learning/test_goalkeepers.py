@@ -7,7 +7,8 @@ from math import pi
 import numpy as np
 import pytest
 
-from robobt.learning.opponents.goalkeepers import Case, FittedGoalkeepers, Goalkeepers
+from robobt.learning.opponents.goalkeeper_cases import Case
+from robobt.learning.opponents.goalkeepers import FittedGoalkeepers, Goalkeepers
 from robobt.plays import goalkeeper
 from robobt.plays.goalkeeper import fitted_goalkeeper
 from robobt.sim.arenas import Arenas

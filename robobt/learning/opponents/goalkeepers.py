@@ -6,29 +6,29 @@ compares them with the trees on random frames.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from enum import IntEnum
-from math import hypot, inf, isnan
-from typing import NamedTuple, Protocol
+from math import hypot, inf
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from robobt.learning.opponents.goalkeeper_cases import (
+    Case,
+    GoalkeeperMemory,
+    Setting,
+    Style,
+    case_of,
+    set_out,
+)
 from robobt.learning.opponents.sides import Arenas, see_ball, see_robots
-from robobt.motion.ball_watch import Watch, follow
+from robobt.motion.ball_watch import follow
 from robobt.motion.path_planner import travel_law
 from robobt.motion.pilot import ROBOBULLS_LIMITS, drive_law
 from robobt.motion.scene import BALL_GAP, scene_of, trip_of
 from robobt.sim.records import COMMAND, Command, size
-from robobt.skills.base import FACING, heading_thereabouts
-from robobt.skills.conditions.ball_aimed_at_goal import aimed_at
-from robobt.skills.conditions.ball_at_defense_edge import BallAtDefenseEdge, is_at_edge, is_ours
-from robobt.skills.conditions.ball_rests_in_defense import BallRestsInDefense, lies_in_area
 from robobt.skills.defence.block_shot import blocking_place, dive_speed
-from robobt.skills.defence.cover_angle import CoverAngle, cover_place, is_at_home
-from robobt.skills.defence.cover_near_post import CoverNearPost, near_post_place
+from robobt.skills.defence.cover_near_post import CoverNearPost
 from robobt.skills.defence.return_to_goal import ReturnToGoal
-from robobt.skills.defence.shot_coming import ShotComing, crossing
+from robobt.skills.defence.shot_coming import ShotComing
 from robobt.world.ball_model import ROLL_DECELERATION, SLIDE_DECELERATION, SWITCH_SHARE
 from robobt.world.compiled import compiled, numbers_of, record_dtype
 from robobt.world.field import FieldGeometry
@@ -41,86 +41,22 @@ from robobt.world.records import (
     MOVER_SIZE,
     ROBOT,
     ROBOT_SIZE,
-    Limits,
-    Robot,
-    Scene,
-    Trip,
     limits_of,
     mover_records,
     robot_records,
 )
-from robobt.world.rules import ALONG
 from robobt.world.state import ROBOT_RADIUS, BallState, Frame, RobotState
 
-
-class Case(IntEnum):
-    """Cases of the play, in the order in which their conditions are checked."""
-
-    AIM = 0
-    SHOT = 1
-    FETCH = 2
-    CLEAR = 3
-    COVER = 4
-    HOME = 5
-
-
-_BEFORE_GOAL, _STAND_OUT = ReturnToGoal.before_goal, CoverAngle.stand_out
-_EDGE_REST_SPEED, _AREA_REST_SPEED = BallAtDefenseEdge.rest_speed, BallRestsInDefense.rest_speed
-
-
-class _Style(NamedTuple):
-    """The parameters that differ between the two plays.
-
-    Attributes:
-        min_speed: slowest approach that counts as a shot [m/s].
-        margin: how far beside the goal a shot still counts [m].
-        before_goal: balls farther back than this count as beside the goal [m].
-        near_post: whether it covers the near post, rather than the angle between the posts.
-        dives: whether it dives, and catches with the dribbler.
-    """
-
-    min_speed: float
-    margin: float
-    before_goal: float
-    near_post: bool
-    dives: bool
-
-
-_DEFAULT_STYLE = _Style(ShotComing.min_speed, 0.1, 0.0, near_post=False, dives=True)
-_FITTED = _Style(0.01, 0.0, CoverNearPost.before_goal, near_post=True, dives=False)
-
-
-class _Setting(Protocol):
-    """What every arena has in common; the trip is the goalkeeper's."""
-
-    trip: Trip
-    scene: Scene
-    own: Limits
-    field: FieldGeometry
-
-
-class _GoalkeeperMemory(Protocol):
-    """Of one goalkeeper.
-
-    Attributes:
-        aim, shot: the ball as seen in these cases.
-        fetching: whether a ball is being fetched.
-        slowed: whether it drives by other limits than its own.
-    """
-
-    aim: Watch
-    shot: Watch
-    fetching: float
-    slowed: float
-
-
-_SETTING, _GOALKEEPER_MEMORY = record_dtype(_Setting), record_dtype(_GoalkeeperMemory)
+_BEFORE_GOAL = ReturnToGoal.before_goal
+_DEFAULT_STYLE = Style(ShotComing.min_speed, 0.1, 0.0, near_post=False, dives=True)
+_FITTED = Style(0.01, 0.0, CoverNearPost.before_goal, near_post=True, dives=False)
+_SETTING, _GOALKEEPER_MEMORY = record_dtype(Setting), record_dtype(GoalkeeperMemory)
 
 
 class Goalkeepers:
     """One goalkeeper in each of ``n`` arenas; it defends the goal at +x, which all other robots attack.
 
-    The game is in play and the ball on the ground. In the cases :data:`FETCH` and :data:`CLEAR`, for a ball
+    The game is in play and the ball on the ground. In the cases ``FETCH`` and ``CLEAR``, for a ball
     at rest that the goalkeeper may take, it stands still, so that a task can end the episode.
 
     Args:
@@ -249,7 +185,7 @@ class FittedGoalkeepers(Goalkeepers):
 
 @compiled
 def _decide(
-    style: _Style,
+    style: Style,
     setting_: FloatArray,
     given_: FloatArray,
     memory_: FloatArray,
@@ -272,18 +208,18 @@ def _decide(
         rows[0 if k == me else (k + 1 if k < me else k)] = k
     seen_, movers = np.empty((count, ROBOT_SIZE)), np.empty((count, MOVER_SIZE))
     seen, every = robot_records(seen_), mover_records(movers)
-    setting: _Setting = setting_.view(_SETTING)[0]
+    setting: Setting = setting_.view(_SETTING)[0]
     scene, trip, own = setting.scene, setting.trip, setting.own
     for i in range(len(balls)):
         ball, memory, given = scene.ball, memories[i], limits[i]
         see_ball(balls[i], -1.0, ball)
         see_robots(robots[i], contact[i], rows, -1.0, own, ball, seen, every, has)
         setting_[:ROBOT_SIZE] = seen_[0]
-        case, y = _case(style, setting, seen, has, memory)
+        case, y = case_of(style, setting, seen, has, memory)
         slowed, order = memory.slowed > 0.0, (0.0, 0.0, 0.0)
         commands[i] = 0.0
         command: Command = orders[i]
-        if case == Case.COVER and not _set_out(style, setting):
+        if case == Case.COVER and not set_out(style, setting):
             case = Case.HOME
         if case in (Case.AIM, Case.SHOT):
             target, final_speed = (ROBOT_RADIUS - scene.half_length, y), 0.0
@@ -306,58 +242,3 @@ def _decide(
             order = travel_law(trip, scene, every, own, given, slowed, False)
         cases[i] = case
         command.vx, command.vy, command.omega = order
-
-
-@compiled
-def _case(
-    style: _Style,
-    setting: _Setting,
-    robots: Sequence[Robot],
-    has: NDArray[np.bool_],
-    memory: _GoalkeeperMemory,
-) -> tuple[int, float]:
-    """Return the case, and where the ball would cross the goal line if it is one of a shot [m]."""
-    field, ball = setting.field, setting.scene.ball
-    carried, carries, nearest, own_way = False, False, inf, 0.0
-    for k in range(len(robots)):
-        robot = robots[k]
-        dx, dy = ball.x - robot.x, ball.y - robot.y
-        along = has[k] and hypot(ball.vx - robot.vx, ball.vy - robot.vy) < ALONG
-        carried = carried or along
-        if k == 0:
-            carries, own_way = along, hypot(dx, dy)
-            continue
-        nearest = min(nearest, hypot(dx, dy))
-        if has[k]:
-            aim = aimed_at(robot, ball, field)
-            if not isnan(aim):
-                return Case.AIM, aim
-    y = crossing(ball, field, style.min_speed, style.margin)
-    if abs(y) < inf and not carried:
-        return Case.SHOT, y
-    speed, fetching = hypot(ball.vx, ball.vy), memory.fetching > 0.0
-    at_edge = is_at_edge(ball, field, fetching)
-    fetching = at_edge and (fetching or (speed <= _EDGE_REST_SPEED and is_ours(own_way, nearest)))
-    memory.fetching = 1.0 if fetching else 0.0
-    if fetching:
-        return Case.FETCH, 0.0
-    if lies_in_area(ball, field) and (speed <= _AREA_REST_SPEED or carries):
-        return Case.CLEAR, 0.0
-    return (Case.COVER if ball.x > style.before_goal - field.length / 2 else Case.HOME), 0.0
-
-
-@compiled
-def _set_out(style: _Style, setting: _Setting) -> bool:
-    """Set the trip of CoverNearPost or CoverAngle; return False if the skill would fail."""
-    trip, ball, field = setting.trip, setting.scene.ball, setting.field
-    avoids = False
-    if style.near_post:
-        trip.x, trip.y, inside = near_post_place(trip.me, ball, field)
-        if not inside:
-            return False
-    else:
-        trip.x, trip.y = cover_place(ball, field, _STAND_OUT)
-        avoids = not is_at_home(trip.me, field)
-    trip.heading = heading_thereabouts(trip.me, (ball.x, ball.y), FACING)
-    trip.final_speed, trip.ball_gap, trip.avoids_robots = 0.0, -1.0, 1.0 if avoids else 0.0
-    return True

@@ -16,7 +16,8 @@ from typing import TYPE_CHECKING, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from robobt.learning.opponents.goalkeepers import Case, FittedGoalkeepers, Goalkeepers
+from robobt.learning.opponents.goalkeeper_cases import Case
+from robobt.learning.opponents.goalkeepers import FittedGoalkeepers, Goalkeepers
 from robobt.learning.opponents.sides import FIELD_GEOMETRY, Arenas, see_ball, see_robot
 from robobt.learning.opponents.straight import DRIVING_LIMITS, TURN, DrivingLimits, drive_of, drive_straight
 from robobt.sim.records import COMMAND, Command, size

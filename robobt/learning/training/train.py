@@ -50,8 +50,8 @@ def train(
         TrainError: the weights became NaN.
         OSError: a file cannot be written.
     """
-    # Policies that a run loads, those of opponents for example, would set MKL to the order of additions that all
-    # processors can, which takes twice as long for a batch.
+    # A policy that the run loads, an opponent's for example, would set MKL to the order of additions that
+    # all processors can, which takes twice as long for a batch.
     os.environ.setdefault("MKL_CBWR", "AUTO")
     clock = RunClock()
     if problem is None:
