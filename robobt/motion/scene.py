@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from math import hypot, inf
-from typing import TypedDict
+from typing import TypedDict, Unpack
 
 import numpy as np
 
@@ -96,26 +96,10 @@ def trip_of(
     target: Point,
     heading: float = 0.0,
     final_speed: float = 0.0,
-    *,
-    avoid_robots: bool = True,
-    avoid_ball: bool = False,
-    ball_gap: float = BALL_GAP,
-    goalkeeper: bool = False,
-    placing: bool = False,
+    **freedom: Unpack[Freedom],
 ) -> FloatArray:
-    """Return the :class:`~robobt.world.records.Trip` of one robot; options as of :class:`Freedom`."""
-    trip = trip_numbers(
-        me,
-        target,
-        heading,
-        final_speed,
-        avoid_robots=avoid_robots,
-        avoid_ball=avoid_ball,
-        ball_gap=ball_gap,
-        goalkeeper=goalkeeper,
-        placing=placing,
-    )
-    return np.array(trip, dtype=np.float64)
+    """Return the :class:`~robobt.world.records.Trip` of one robot."""
+    return np.array(trip_numbers(me, target, heading, final_speed, **freedom), dtype=np.float64)
 
 
 def trip_numbers(

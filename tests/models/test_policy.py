@@ -205,7 +205,11 @@ def test_shipped_networks_answer_the_same_on_every_processor() -> None:
     """The hashes were taken on an AMD processor with torch 2.13, and compared on one of Intel's with 2.11."""
     without = {name: value for name, value in os.environ.items() if name != "MKL_CBWR"}
     ran = subprocess.run(
-        [sys.executable, "-c", ANSWERS, *map(str, SHIPPED)], capture_output=True, text=True, check=True, env=without
+        [sys.executable, "-c", ANSWERS, *map(str, SHIPPED)],
+        capture_output=True,
+        text=True,
+        check=True,
+        env=without,
     )
     assert json.loads(ran.stdout) == HASHES
 
