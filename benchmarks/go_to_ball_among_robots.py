@@ -19,8 +19,8 @@ from robobt import load_policy
 from robobt.cli.common import parse_assignments
 from robobt.learning import run_starts
 from robobt.learning.envs import GoToBallAmongRobotsSettings, make_task
-from robobt.learning.envs.arena_task import Policy
 from robobt.learning.envs.scripted import freest_way, straight_drive_among
+from robobt.learning.envs.task_parts import Policy
 from robobt.learning.training.teachers import playing, skill
 from robobt.statistics import mean_interval, wilson_interval
 

@@ -2,91 +2,46 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
 from functools import partial
-from typing import ClassVar, Literal, cast
+from typing import cast
 
 import numpy as np
-from gymnasium.spaces import Box
 from numpy.typing import ArrayLike, NDArray
 
-from robobt.learning.envs.bounds import bounded, ranges_of, scale_of
-from robobt.learning.envs.central import TURNED, states_of
 from robobt.learning.envs.episodes import Episodes
 from robobt.learning.envs.judging import Ledger, count, goals
 from robobt.learning.envs.perception import Perception
 from robobt.learning.envs.progress import PROGRESS, progress_at
 from robobt.learning.envs.randomiser import Randomiser
 from robobt.learning.envs.settings import MemorySettings, TaskSettings
-from robobt.learning.envs.starts import (
-    START_COLUMNS,
-    StartPool,
-    check_starts,
-    columns_of,
-    commands_before,
-    split,
-)
+from robobt.learning.envs.starts import StartPool, check_starts, columns_of, commands_before, split
 from robobt.learning.envs.task import BoolArray, EpisodeEnds, FloatArray, IntArray, StepResult
+from robobt.learning.envs.task_parts import TaskParts
 from robobt.learning.envs.tick import Tick, call, checked_starts, checked_terms, end_by, error_of
 from robobt.models.actions import fill_commands
 from robobt.sim.arenas import Arenas
 from robobt.sim.records import COMMAND, size
-from robobt.skills.base import Skill
 from robobt.world.compiled import numbers_of
-from robobt.world.features import ObservationSpec
-from robobt.world.limits import RobotLimits
 from robobt.world.memory import Memory, MemorySize, with_memory
-from robobt.world.observation import Observation, Seen, seen
-from robobt.world.records import BALL
-
-Policy = Callable[[FloatArray], FloatArray]
-"""Observations (n, O) to actions (n, A)."""
+from robobt.world.observation import Observation, seen
 
 _TASKS: dict[type[TaskSettings], type[ArenaTask]] = {}
 """The task that settings of each class belong to."""
 
 
-class ArenaTask:
+class ArenaTask(TaskParts):
     """``n`` arenas with a ball and a learner's robot; see :class:`~robobt.learning.envs.task.VectorTask`.
 
-    A task is a subclass with five parts, and a further subclass can replace each part alone: the observation
-    (:attr:`observation`), the starts of episodes (:meth:`sample`), the reward (:meth:`reward`), the ends of
-    episodes (:meth:`ends`), and the robots that do not learn (:meth:`oppose`).
-
-    With several learners their observations, and their actions, are concatenated.
+    A task is a subclass that defines the parts of :class:`~robobt.learning.envs.task_parts.TaskParts`. With
+    several learners their observations, and their actions, are concatenated.
 
     ``settings`` are the task's settings. ``seed`` is the seed of all random draws from the first ``reset``
     on; None for a new one each time. Each arena has its own generators: its episodes depend only on the seed
     and its index, bit for bit, whatever the number of arenas.
 
     Attributes:
-        name: name under which it is registered. Settings: class of the task's settings, one for each task; a
-            subclass without one gets its own.
-        played_by: the skill that uses a model of this task.
-        timed: the time of an episode that measures how fast a success was.
-        central: whether a central critic can be used.
-        terms: record type of the reward's terms, one number each.
-        arenas: the simulator, from the first ``reset`` on.
-        observation: specification of the observation, with its memory.
-        seen_size: number of its entries without the memory.
-        robots: number of robots in an arena; a start's first columns are their states.
-        blue: number of robots in the learner's team, which come first.
-        learners: indices of the robots that learn.
-        start_columns: columns of a start: each robot, the ball, and the task's further columns.
         ended: the episodes that ended in the last step, or None.
     """
-
-    name: ClassVar[str] = ""
-    Settings: ClassVar[type[TaskSettings]] = TaskSettings
-    played_by: ClassVar[str] = "LearnedSkill"
-    timed: ClassVar[Literal["time", "kick_time"]] = "time"
-    central: ClassVar[bool] = False
-    terms: ClassVar[np.dtype[np.void]] = np.dtype([])
-    observation: ObservationSpec
-    robots: int = 1
-    blue: int = 1
-    learners: tuple[int, ...] = (0,)
-    start_columns: tuple[str, ...] = START_COLUMNS
 
     def __init_subclass__(cls) -> None:
         super().__init_subclass__()
@@ -98,26 +53,9 @@ class ArenaTask:
         _TASKS[cls.Settings] = cls
 
     def __init__(self, settings: TaskSettings | None = None, n: int = 1, seed: int | None = None) -> None:
-        if n < 1:
-            raise ValueError(f"n must be at least 1, not {n}")
-        if not isinstance(getattr(self, "observation", None), ObservationSpec):
-            raise TypeError(f"{type(self).__name__}: has no observation")
-        if self.robots < 1:
-            raise ValueError(f"{type(self).__name__}: robots must be at least 1, not {self.robots}")
-        if not set(self.learners) <= set(range(self.robots)):
-            known = ", ".join(str(index) for index in range(self.robots))
-            raise ValueError(
-                f"{type(self).__name__}: learners must be of the robots {known}, not {self.learners}"
-            )
-        columns = columns_of(self.robots)
         settings = self.Settings() if settings is None else settings
-        if tuple(self.learners) != tuple(settings.learners):
-            raise ValueError(
-                f"{type(self).__name__}: learners must be {settings.learners}, not {self.learners}; several "
-                "robots learn in subclasses of SoccerTask"
-            )
-        if settings.decide_every < 1 or settings.time_limit < 1:
-            raise ValueError(f"{type(self).__name__}: decide_every and time_limit must be at least 1")
+        self._check(settings, n)
+        columns = columns_of(self.robots)
         if len(self.start_columns) < len(columns):
             self.start_columns = columns
         self.settings = settings
@@ -133,7 +71,6 @@ class ArenaTask:
         self.observation_size = len(self.learners) * self.observation.size
         self.action_size = len(self.learners) * self.action.size
         self.ended: Episodes | None = None
-        self.arenas: Arenas
         self._memory: Memory | None
         self._last_seen: FloatArray
         self._scaling = numbers_of(self.action)
@@ -144,55 +81,12 @@ class ArenaTask:
         self._rewards = np.zeros(n)
         self._own_terms: NDArray[np.void] | None = None
         judged_by = next(kind for kind in type(self).__mro__ if "_judge" in vars(kind))
-        self._own_reward = type(self).reward is not judged_by.__dict__.get("reward", ArenaTask.reward)
+        self._own_reward = type(self).reward is not judged_by.__dict__.get("reward", TaskParts.reward)
         self._own_observations = not type(self).observe.__module__.startswith("robobt.") or isinstance(
             self._without_memory, Observation
         )
         self._own_opponents = not type(self).oppose.__module__.startswith("robobt.")
-        self._own_ends = type(self).ends is not judged_by.__dict__.get("ends", ArenaTask.ends)
-
-    def sample(self, rng: np.random.Generator, count: int) -> FloatArray:
-        """Sample ``count`` starts (count, S), columns :attr:`start_columns`, from ``rng``; return them.
-
-        :func:`~robobt.learning.envs.starts.start_parts` gives access to their columns by name.
-        """
-        raise NotImplementedError(f"{type(self).__name__}: has no starts")
-
-    def observe(self, robots: FloatArray, balls: FloatArray) -> FloatArray:
-        """Compute the observations (m, O) of robots (m, R, 6) and balls (m, 4)."""
-        maker = self._without_memory
-        if not isinstance(maker, Observation):
-            raise NotImplementedError(f"{type(self).__name__}: nothing makes its observation")
-        made: FloatArray = np.asarray(
-            maker.rows(seen(robots, balls, self.blue, self.settings.field)), dtype=np.float64
-        )
-        if made.shape != (len(balls), self.seen_size):
-            raise ValueError(f"makes {made.shape} of {(len(balls), self.seen_size)}")
-        if not np.isfinite(made).all():
-            entry = self.observation.entries[int(np.flatnonzero(~np.isfinite(made).all(axis=0))[0])]
-            raise ValueError(f"the entry {entry.name!r} is not finite")
-        return made
-
-    def reward(self, tick: Tick) -> Mapping[str, FloatArray]:
-        """Return the terms of a tick's reward by name, (n,) each; their sum is the reward."""
-        return tick.terms
-
-    def ends(self, tick: Tick) -> tuple[BoolArray, BoolArray]:
-        """Return which episodes end in this tick with success, and which without, (n,) each.
-
-        The time limit applies automatically, see ``time_limit``.
-        """
-        return tick.success, tick.failed
-
-    def oppose(self, commands: FloatArray) -> None:
-        """Fill in the ``commands`` (n, R, 7) of the robots that do not learn, for one tick.
-
-        ``commands.view(COMMAND)[..., 0]`` gives their fields by name (:class:`robobt.sim.records.Command`),
-        :attr:`now` the robots and balls.
-        """
-
-    def begin(self, starts: FloatArray, which: IntArray) -> None:
-        """Read the columns after robots and ball from the ``starts`` (m, S) of the arenas ``which``."""
+        self._own_ends = type(self).ends is not judged_by.__dict__.get("ends", TaskParts.ends)
 
     def _judge(self, actions: FloatArray, rewards: FloatArray, ends: EpisodeEnds) -> bool:  # noqa: ARG002
         """Add a tick's reward to ``rewards`` (n,) and fill ``ends``; return whether any episode has ended.
@@ -202,78 +96,6 @@ class ArenaTask:
         """
         fired: BoolArray = np.any(self.arenas.kicked[:, self.learners], axis=1)
         return count(self.settings.time_limit, fired, self._ledger(rewards, ends))
-
-    def _optimum(self, starts: FloatArray, which: IntArray) -> FloatArray:  # noqa: ARG002
-        """Return the shortest possible times from the starts [s]; nan where unknown."""
-        return np.full(len(which), np.nan)
-
-    def _announce(self, seen: FloatArray, which: IntArray) -> None:
-        """Fill entries of observations (m, O) of the arenas ``which`` beyond robots and ball."""
-
-    @property
-    def ranges(self) -> dict[str, float]:
-        """Largest values of the quantities that entries of the observation name as their range.
-
-        They follow from walls, limits, kicker and noise.
-        """
-        return ranges_of(self.settings)
-
-    @property
-    def space(self) -> Box[np.float32]:
-        """What each learner can observe."""
-        return bounded(self.observation, self.ranges)
-
-    @property
-    def scale(self) -> tuple[float, ...]:
-        """Typical size of each entry of a learner's observation, in its unit."""
-        return scale_of(self.observation, self.action)
-
-    @property
-    def central_scale(self) -> tuple[float, ...]:
-        """Typical size of each additional entry for a central critic; empty without one."""
-        return ()
-
-    def central_view(self) -> FloatArray:
-        """Return the additional input of a central critic for each learner, (n, L, entries)."""
-        return np.zeros((self.n, len(self.learners), 0))
-
-    @property
-    def state_size(self) -> int:
-        """Number of entries of an arena's :meth:`state`."""
-        return size(TURNED) * self.robots + size(BALL)
-
-    def state(self) -> FloatArray:
-        """Return the arenas' true states, (n, 7 R + 4), for learning from them.
-
-        For each robot they have x, y, the heading's cosine and sine, vx, vy, omega, then the ball's x, y, vx,
-        vy, in field coordinates.
-        """
-        robots = states_of(self.arenas.robots).reshape(self.n, -1)
-        return np.concatenate((robots, self.arenas.balls), axis=1)
-
-    @property
-    def shares(self) -> FloatArray:
-        """Each learner's reward in the last decision, (n, L); their mean is the arena's reward."""
-        return np.repeat(self._rewards[:, None], len(self.learners), axis=1)
-
-    @property
-    def reach(self) -> float | None:
-        """Distance at which the ball counts as reached, for pictures [m]; None for none."""
-        return None
-
-    def script(self) -> Policy | None:
-        """Return a hand-written policy on the observations for the task, or None."""
-        return None
-
-    def skill(self) -> Skill | None:
-        """Return a skill for the task, for demonstrations, or None."""
-        return None
-
-    @property
-    def _robot_limits(self) -> list[RobotLimits | None]:
-        """The limits of each robot; None for the simulator's own."""
-        own = self.settings.robot_limits
-        return [own if index in self.learners else None for index in range(self.robots)]
 
     @property
     def _progress(self) -> NDArray[np.void]:
@@ -295,27 +117,10 @@ class ArenaTask:
         return cast(Ledger, (self._progress_rows, self._term_rows, rewards, *ends))
 
     @property
-    def now(self) -> Seen:
-        """Robots and balls in field coordinates; ``now.me`` is the first robot."""
-        return seen(self.arenas.robots, self.arenas.balls, self.blue, self.settings.field)
-
-    @property
     def ticks(self) -> FloatArray:
         """Ticks since the start of each arena's episode, (n,)."""
         ticks: FloatArray = self._progress["ticks"]
         return ticks
-
-    def jointly(self, policy: Policy) -> Policy:
-        """Return a policy for whole arenas that applies ``policy`` to each learner."""
-        each = len(self.learners)
-        if each == 1:
-            return policy
-
-        def decide(observation: FloatArray) -> FloatArray:
-            arenas = len(observation)
-            return policy(observation.reshape(arenas * each, -1)).reshape(arenas, -1)
-
-        return decide
 
     def sample_starts(self, seed: int, count: int) -> FloatArray:
         """Return ``count`` starts (count, S) from a separate ``seed``, leaving the task's state unchanged."""

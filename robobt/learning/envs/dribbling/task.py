@@ -12,10 +12,11 @@ from pydantic import Field, model_validator
 from robobt.challenges.dribbling import GateDribbling
 from robobt.challenges.gates import POSTS_TOUCHED, GateCounter
 from robobt.config.validation import Settings
-from robobt.learning.envs.arena_task import ArenaTask, Policy
+from robobt.learning.envs.arena_task import ArenaTask
 from robobt.learning.envs.settings import TaskSettings
 from robobt.learning.envs.starts import MOUTH_GAP, columns_of, places_of, start_parts
 from robobt.learning.envs.task import BoolArray, FloatArray, IntArray
+from robobt.learning.envs.task_parts import Policy
 from robobt.learning.envs.tick import Tick
 from robobt.models.actions import ActionScaling
 from robobt.skills.challenges.carry_along import GATE_POSTS, GATES

@@ -8,7 +8,7 @@ from typing import Protocol
 
 import numpy as np
 
-from robobt.learning.envs.arena_task import ArenaTask, Policy
+from robobt.learning.envs.arena_task import ArenaTask
 from robobt.learning.envs.bounds import BUMP, farthest, seen_speed, seen_turn
 from robobt.learning.envs.episodes import straight_line_time
 from robobt.learning.envs.go_to_ball.rewards import GoToBallReward, GoToBallTerms, reward
@@ -23,6 +23,7 @@ from robobt.learning.envs.progress import PROGRESS, EpisodeProgress
 from robobt.learning.envs.scripted import BEHIND, drive_and_face, drive_to_shoot, freest_way, steady_gain
 from robobt.learning.envs.starts import split, start_parts
 from robobt.learning.envs.task import EpisodeEnds, FloatArray, IntArray
+from robobt.learning.envs.task_parts import Policy
 from robobt.learning.opponents.patrols import PATROL_TRAITS, Patrols
 from robobt.skills.ball.go_to_ball import GoToBall
 from robobt.skills.base import Skill

@@ -8,7 +8,7 @@ from typing import Protocol
 
 import numpy as np
 
-from robobt.learning.envs.arena_task import ArenaTask, Policy
+from robobt.learning.envs.arena_task import ArenaTask
 from robobt.learning.envs.bounds import BUMP, farthest, seen_speed, seen_turn
 from robobt.learning.envs.judging import (
     Ledger,
@@ -26,6 +26,7 @@ from robobt.learning.envs.score_on_goalkeeper.settings import ScoreOnGoalkeeperS
 from robobt.learning.envs.score_on_goalkeeper.starts import SCORE_START_COLUMNS, score_starts
 from robobt.learning.envs.scripted import drive_and_kick, steady_gain
 from robobt.learning.envs.task import BoolArray, EpisodeEnds, FloatArray, IntArray
+from robobt.learning.envs.task_parts import Policy
 from robobt.learning.opponents.keepers import GOALKEEPER_TRAITS, Keepers
 from robobt.world.compiled import compilable, compiled_lean, record_dtype
 from robobt.world.features import ObservationSpec

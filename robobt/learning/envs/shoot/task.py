@@ -8,7 +8,7 @@ from typing import Protocol
 
 import numpy as np
 
-from robobt.learning.envs.arena_task import ArenaTask, Policy
+from robobt.learning.envs.arena_task import ArenaTask
 from robobt.learning.envs.bounds import BUMP, farthest, seen_speed, seen_turn
 from robobt.learning.envs.judging import (
     Ledger,
@@ -27,6 +27,7 @@ from robobt.learning.envs.shoot.settings import ShootSettings
 from robobt.learning.envs.shoot.starts import shoot_starts
 from robobt.learning.envs.starts import start_parts
 from robobt.learning.envs.task import EpisodeEnds, FloatArray, IntArray
+from robobt.learning.envs.task_parts import Policy
 from robobt.sim.records import COMMAND
 from robobt.skills.ball.kick_to_target import KickToTarget
 from robobt.skills.base import Skill
