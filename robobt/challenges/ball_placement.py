@@ -7,11 +7,13 @@ from dataclasses import dataclass
 from functools import partial
 from typing import ClassVar
 
+import numpy as np
+
 from robobt.challenges.challenge import CHALLENGES, ChallengeAttempt, Figures, FixedChallenge
-from robobt.match.referee.automatic import AutomaticReferee
-from robobt.match.referee.events import Decision, EventKind
+from robobt.challenges.placing import PlacedBalls
+from robobt.match.referee.events import Decision
 from robobt.match.scenario.scenario import Scenario, scenario_from
-from robobt.world.field import DIVISION_B, FieldGeometry
+from robobt.world.field import FieldGeometry
 from robobt.world.game import GameState, RefereeCommand, Restart, Team
 from robobt.world.geometry import Point, distance
 from robobt.world.state import Frame
@@ -91,7 +93,8 @@ class PlacementJudge:
 
     def __init__(self, spot: Point, boundary: bool) -> None:
         self._spot, self._boundary = spot, boundary
-        self._automatic = AutomaticReferee(DIVISION_B)
+        self._balls: PlacedBalls | None = None
+        self._since = 0.0
         self._start: Point = (0.0, 0.0)
         self._gap = 0.0
         self.points = dict.fromkeys(
@@ -107,7 +110,6 @@ class PlacementJudge:
             self._start = ball.position
         elif self._boundary and frame.field.contains(ball.x, ball.y):
             points["off boundary"] = 1.0
-        events = self._automatic.watch(frame, game)
         self._gap = distance(ball.position, self._spot)
         if any(robot.ball_contact for robot in frame.own):
             points["dribbler"] = 1.0
@@ -115,9 +117,18 @@ class PlacementJudge:
             points["moved"] = 1.0
         if self._gap < _NEAR_GOAL and ball.speed < _BALL_RESTS:
             points["stopped near"] = 1.0
-        if any(event.kind is EventKind.PLACEMENT_SUCCEEDED for event in events):
+        if game.command is RefereeCommand.BALL_PLACEMENT_BLUE and self._is_placed(frame):
             points["placed"], self.time = 1.0, frame.time - STOP_BEFORE
         return self.time is not None
+
+    def _is_placed(self, frame: Frame) -> bool:
+        ball = np.array([frame.ball.position])
+        if self._balls is None:
+            self._balls, self._since = PlacedBalls(1, frame.period), frame.time
+            self._balls.restart(np.array([0]), ball)
+        robots = np.array([[robot.position for robot in frame.own]])
+        elapsed = np.array([frame.time - self._since])
+        return bool(self._balls.see(robots, ball, np.array([self._spot]), elapsed)[0])
 
     def figures(self) -> Figures:
         """Return the points, what they were given for, and the time of the placement [s]."""

@@ -3,16 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from math import isnan, nan
 from typing import ClassVar
 
+import numpy as np
+
 from robobt.challenges.challenge import CHALLENGES, ChallengeAttempt, Figures, FixedChallenge
+from robobt.challenges.handover import Handover
 from robobt.match.referee.automatic import AutomaticReferee
 from robobt.match.referee.settings import RefereeSettings
 from robobt.match.referee.verdicts import FOULS
 from robobt.match.scenario.scenario import scenario_from
 from robobt.world.field import DIVISION_B
 from robobt.world.game import GameState, Team
-from robobt.world.rules import area_distance, in_their_defense_area, scorer, touches
+from robobt.world.geometry import Point
+from robobt.world.rules import area_distance, scorer, touches
 from robobt.world.state import ROBOT_RADIUS, BallState, Frame, RobotId
 
 TRY_TIME = 30.0
@@ -24,8 +29,17 @@ FAST_BALL, FAST_ROBOT, HIGH_BALL = 3.5, 2.5, 0.1
 MAJOR, JUNIOR = RobotId(Team.BLUE, 0), RobotId(Team.BLUE, 1)
 """The robots of the Small Size League and of the junior league."""
 
-_JUNIOR_STARTS = 0.1
-"""Speed from which a robot does not stay still [m/s]."""
+PAIR = (MAJOR, JUNIOR)
+"""Both in the order of :class:`~robobt.challenges.handover.Handover`."""
+
+PLACES: tuple[Point, Point] = ((-2.5, 1.0), (-0.5, -2.0))
+"""Starts of both robots [m]. Source: as above."""
+
+BALL_START: Point = (-1.5, 0.0)
+"""Start of the ball [m]. Source: as above."""
+
+START_SPREAD = 0.05
+"""Radius around their starts in which both robots stand [m]."""
 
 _OVER_SPEED = 0.05
 """How much faster than allowed counts as measured wrongly [m/s]."""
@@ -35,33 +49,22 @@ class CooperationJudge:
     """Counts the points of one try.
 
     Source: the challenge's rules of 2026. The junior robot stays still until the other has shot the ball,
-    then shoots it into the goal. It earns 6 points for a touch, 4 for one in the attacked half, 6 for a shot
-    into the penalty area, 10 for the goal, and 10 each for a goal within 15 and 20 s. A wrong order costs 4
-    points, every other broken rule 1 point. A chip above 0.1 m ends the try without points.
+    then shoots it into the goal, for the points of :class:`Handover`. A wrong order costs 4 points, every
+    other broken rule 1 point. A chip above 0.1 m ends the try without points.
     """
 
     def __init__(self) -> None:
-        self.earned: dict[str, float] = {}
         self.broken: set[str] = set()
-        self.time: float | None = None
-        self._shot = False
+        self._handover: Handover | None = None
         self._before: BallState | None = None
         self._automatic = AutomaticReferee(DIVISION_B, RefereeSettings(max_ball_speed=FAST_BALL))
 
     def see(self, frame: Frame, game: GameState) -> bool:
         """Take in the next true ``frame`` and the ``game`` there; return whether the try is over."""
-        ball, robots, last = frame.ball, frame.robots(), frame.last_touch
-        junior = robots[JUNIOR]
-        if not self._shot:
-            self._shot = last == MAJOR and not touches(robots[MAJOR], ball) and ball.speed > _JUNIOR_STARTS
-            if junior.speed > _JUNIOR_STARTS and not self._shot:
-                self.broken.add("order")
-        if last == JUNIOR:
-            self.earned["touch"] = 6.0
-            if touches(junior, ball) and ball.x > 0.0:
-                self.earned["touch ahead"] = 4.0
-            if in_their_defense_area(frame.field, ball.x, ball.y) and not touches(junior, ball):
-                self.earned["into the area"] = 6.0
+        ball = frame.ball
+        scored = self._before is not None and scorer(frame.field, self._before, ball) is Team.BLUE
+        self._before = ball
+        self._count(frame, scored)
         for event in self._automatic.watch(frame, game):
             if event.team is Team.BLUE and event.kind in FOULS:
                 self.broken.add(event.kind.value)
@@ -76,22 +79,33 @@ class CooperationJudge:
         if ball.z > HIGH_BALL:
             self.broken.add("chip")
             return True
-        scored = self._before is not None and scorer(frame.field, self._before, ball) is Team.BLUE
-        self._before = ball
-        if scored and last == JUNIOR:
-            self.time = frame.time
-            self.earned["goal"] = 10.0
-            self.earned["in 15 s"] = 10.0 if self.time <= 15.0 + 1e-9 else 0.0
-            self.earned["in 20 s"] = 10.0 if self.time <= 20.0 + 1e-9 else 0.0
         return scored
+
+    def _count(self, frame: Frame, scored: bool) -> None:
+        """Let the robots' :class:`Handover` see the frame."""
+        if self._handover is None:
+            self._handover = Handover(1, frame.field)
+        ball, pair = frame.ball, [frame.robots()[robot] for robot in PAIR]
+        self._handover.see(
+            np.array([[robot.speed for robot in pair]]),
+            np.array([[touches(robot, ball) for robot in pair]]),
+            np.array([PAIR.index(frame.last_touch) if frame.last_touch in PAIR else -1]),
+            np.array([ball.position]),
+            np.array([ball.speed]),
+            np.array([scored]),
+            np.array([frame.time]),
+        )
+        if self._handover.early[0]:
+            self.broken.add("order")
 
     def figures(self) -> Figures:
         """Return the points, the goal (0 or 1), how many rules were broken, and the time of the goal [s]."""
         cost = sum(4.0 if what == "order" else 1.0 for what in self.broken)
-        points = 0.0 if "chip" in self.broken else max(0.0, sum(self.earned.values()) - cost)
-        goal = float(self.time is not None)
-        told = {"points": points, "goals": goal, "broken rules": float(len(self.broken))}
-        return told if self.time is None else {**told, "time": self.time}
+        seen = self._handover
+        points = 0.0 if seen is None or "chip" in self.broken else max(0.0, float(seen.points[0]) - cost)
+        time = nan if seen is None else float(seen.scored[0])
+        told = {"points": points, "goals": float(not isnan(time)), "broken rules": float(len(self.broken))}
+        return told if isnan(time) else {**told, "time": time}
 
 
 @CHALLENGES.register("cooperation")
@@ -115,7 +129,6 @@ class Cooperation(FixedChallenge):
     def fixed_attempts(self) -> Sequence[ChallengeAttempt]:
         """Return five tries."""
         limits = {"max_speed": FAST_ROBOT}
-        places = {MAJOR: [-2.5, 1.0], JUNIOR: [-0.5, -2.0]}
         scenario = scenario_from(
             {
                 "name": "cooperation",
@@ -127,12 +140,15 @@ class Cooperation(FixedChallenge):
                             "number": robot.number,
                             "play": "stand_still",
                             "limits": limits,
-                            "start": {"position": {"center": at, "radius": 0.05}, "heading": "towards ball"},
+                            "start": {
+                                "position": {"center": at, "radius": START_SPREAD},
+                                "heading": "towards ball",
+                            },
                         }
-                        for robot, at in places.items()
+                        for robot, at in zip(PAIR, PLACES, strict=True)
                     ]
                 },
-                "ball": {"position": [-1.5, 0.0]},
+                "ball": {"position": BALL_START},
                 "ends": {"time_limit": TRY_TIME},
             },
             "cooperation",

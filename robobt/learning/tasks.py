@@ -38,6 +38,8 @@ _SHIPPED_TASKS = {
     "obstacle_course": "obstacle_course.task:ObstacleCourseTask",
     "dribbling": "dribbling.task:DribblingTask",
     "passing": "passing.task:PassingTask",
+    "ball_placement": "ball_placement.task:BallPlacementTask",
+    "cooperation": "cooperation.task:CooperationTask",
 }
 """Modules of the shipped tasks; each is imported at first use."""
 

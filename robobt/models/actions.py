@@ -25,6 +25,7 @@ ACTION_ENTRIES: dict[str, tuple[str, ...]] = {
     "drive": ("vx", "vy", "omega"),
     "turn_and_kick": ("omega", "kick"),
     "drive_and_kick": ("vx", "vy", "omega", "kick"),
+    "drive_and_hold": ("vx", "vy", "omega", "hold"),
 }
 """Entries of an action vector by the kind of action."""
 
@@ -37,9 +38,11 @@ class ActionScaling(Settings):
     not faster. ``turn_and_kick`` actions are (omega, kick): the robot stays
     where it is, turns, and kicks at once where ``kick`` is above 0.
     ``drive_and_kick`` actions are (vx, vy, omega, kick) and do both.
+    ``drive_and_hold`` actions are (vx, vy, omega, hold): the dribbler turns
+    where ``hold`` is above 0, whatever ``dribbler`` says.
     """
 
-    kind: Literal["drive", "turn_and_kick", "drive_and_kick"]
+    kind: Literal["drive", "turn_and_kick", "drive_and_kick", "drive_and_hold"]
     max_speed: float = Field(0.0, ge=0, le=10, description="speed of a full drive action [m/s]")
     max_turn: float = Field(gt=0, le=100, description="turning rate of a full action [rad/s]")
     kick_speed: float = Field(0.0, ge=0, le=20, description="speed of a kick [m/s]")
@@ -62,6 +65,11 @@ class ActionScaling(Settings):
     def kicks(self) -> bool:
         """Whether their last entry is a kick."""
         return self.entries[-1] == "kick"
+
+    @property
+    def holds(self) -> bool:
+        """Whether their last entry switches the dribbler."""
+        return self.entries[-1] == "hold"
 
     @property
     def entries(self) -> tuple[str, ...]:
@@ -95,6 +103,7 @@ def fill_commands(
     numbers: FloatArray,
     drives: bool,
     kicks: bool,
+    holds: bool,
     kick_factors: FloatArray,
     commands: FloatArray,
 ) -> bool:
@@ -105,6 +114,7 @@ def fill_commands(
         numbers: of the :class:`ActionScaling`.
         drives: whether actions begin with a velocity.
         kicks: whether the last entry is a kick.
+        holds: whether the last entry switches the dribbler.
         kick_factors: (n,) by which the speed of each robot's kicks is multiplied.
         commands: (n, 6) to be filled: vx, vy [m/s], omega [rad/s], kick speed [m/s], whether to
             kick on contact, whether the dribbler turns.
@@ -125,7 +135,7 @@ def fill_commands(
         command[2] = scaling.max_turn * min(max(action[turn], -1.0), 1.0)
         if kicks and action[-1] > 0.0:
             command[3] = scaling.kick_speed * kick_factors[i]
-        command[5] = scaling.dribbler
+        command[5] = action[-1] > 0.0 if holds else scaling.dribbler
     return True
 
 
@@ -139,7 +149,7 @@ def command_of(action: Iterable[float], scaling: ActionScaling) -> RobotCommand:
 
 def commander(scaling: ActionScaling) -> Callable[[Iterable[float]], RobotCommand]:
     """Return :func:`command_of` for one scaling, which is looked up once in place of at every action."""
-    drives, kicks, dribbler = scaling.drives, scaling.kicks, scaling.dribbler
+    drives, kicks, holds, dribbler = scaling.drives, scaling.kicks, scaling.holds, scaling.dribbler
     max_speed, max_turn, kick_speed = scaling.max_speed, scaling.max_turn, scaling.kick_speed
     turn_at, now = 2 if drives else 0, KickTrigger.NOW
 
@@ -155,6 +165,7 @@ def commander(scaling: ActionScaling) -> Callable[[Iterable[float]], RobotComman
                 norm = 1.0
             vx, vy = max_speed * x / norm, max_speed * y / norm
         kick = kick_speed if kicks and entries[-1] > 0.0 else 0.0
-        return RobotCommand(vx, vy, max_turn * entries[turn_at], kick, now, dribbler)
+        turning = entries[-1] > 0.0 if holds else dribbler
+        return RobotCommand(vx, vy, max_turn * entries[turn_at], kick, now, turning)
 
     return command

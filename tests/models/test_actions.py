@@ -13,16 +13,17 @@ from robobt.world.compiled import numbers_of
 def filled(actions: np.ndarray, scaling: ActionScaling, kick_factor: float = 1.0) -> np.ndarray | None:
     commands = np.full((len(actions), 6), 9.0)
     factors = np.full(len(actions), kick_factor)
-    kind = scaling.drives, scaling.kicks
+    kind = scaling.drives, scaling.kicks, scaling.holds
     return commands if fill_commands(actions, numbers_of(scaling), *kind, factors, commands) else None
 
 
 BOTH = ActionScaling(kind="drive_and_kick", max_speed=3.0, max_turn=6.0, kick_speed=6.0, dribbler=True)
+HOLD = ActionScaling(kind="drive_and_hold", max_speed=2.0, max_turn=4.0)
 
 
 @pytest.mark.parametrize(
     "scaling",
-    [GO_TO_BALL_ACTION, SHOOT_ACTION, BOTH, GO_TO_BALL_ACTION.model_copy(update={"dribbler": True})],
+    [GO_TO_BALL_ACTION, SHOOT_ACTION, BOTH, HOLD, GO_TO_BALL_ACTION.model_copy(update={"dribbler": True})],
 )
 def test_a_single_action_stands_for_the_same_command_as_in_a_batch(scaling: ActionScaling) -> None:
     actions = np.random.default_rng(3).normal(0.0, 0.8, (300, scaling.size))
@@ -33,6 +34,11 @@ def test_a_single_action_stands_for_the_same_command_as_in_a_batch(scaling: Acti
             [found.vx, found.vy, found.omega, found.kick_speed, 0.0, found.dribbler], expected, rtol=1e-15
         )
         assert found.kick_trigger is KickTrigger.NOW
+
+
+def test_the_dribbler_turns_where_the_action_holds() -> None:
+    held, let_go = filled(np.array([[0.0, 0.0, 0.0, 0.1], [0.0, 0.0, 0.0, 0.0]]), HOLD)
+    assert (held[5], let_go[5]) == (1.0, 0.0)
 
 
 def test_driving_diagonally_is_not_faster() -> None:

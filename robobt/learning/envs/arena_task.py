@@ -74,7 +74,7 @@ class ArenaTask(TaskParts):
         self._memory: Memory | None
         self._last_seen: FloatArray
         self._scaling = numbers_of(self.action)
-        self._kind = self.action.drives, self.action.kicks
+        self._kind = self.action.drives, self.action.kicks, self.action.holds
         self._seed: int | None = seed
         self._seeded = False
         self._all = np.arange(n)

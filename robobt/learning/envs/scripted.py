@@ -32,6 +32,9 @@ _ROUND_BALL_DISTANCE = 0.3
 _BALL_IN_MOUTH = 0.13
 """A ball whose centre is within this distance is in the mouth [m]."""
 
+TAKEN_DISTANCE = 0.11
+"""A ball whose centre is within this distance is near enough to be turned with [m]."""
+
 _SHOOTING = 1.7
 """Largest distance from the goal for a kick [m]."""
 

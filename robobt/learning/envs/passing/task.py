@@ -6,11 +6,8 @@ import numpy as np
 from pydantic import Field
 
 from robobt.challenges.passes import LEAST_LENGTH, PassCounts
-from robobt.learning.envs.judging import parameters
-from robobt.learning.envs.soccer.judge import JUDGED, TERMS
 from robobt.learning.envs.soccer.rewards import SoccerReward
 from robobt.learning.envs.soccer.settings import (
-    AIMS,
     LEARNER,
     Aim,
     Role,
@@ -60,25 +57,14 @@ class PassingTask(SoccerTask):
     _counts: PassCounts
     _passes: IntArray
 
-    def __init__(self, settings: PassingSettings | None = None, n: int = 1, seed: int | None = None) -> None:
-        super().__init__(settings, n, seed)
-        given = self.settings
-        # The challenge's class counts passes, not the suite's judge.
-        weights = given.reward.model_copy(update={"passed": 0.0})
-        self._judged_by = parameters(
-            JUDGED,
-            settings=given,
-            field=given.field,
-            weights=weights,
-            rules=given.rules,
-            aim=AIMS.index(given.aim),
-            blue=self.blue,
-        )
-
     @property
     def passes(self) -> IntArray:
         """Blue's passes in each arena's episode, (n,)."""
         return self._passes
+
+    def _judged_weights(self, weights: SoccerReward) -> SoccerReward:
+        # The challenge's class counts passes, not the suite's judge.
+        return weights.model_copy(update={"passed": 0.0})
 
     def _build(self) -> None:
         self._counts = PassCounts(self.n, self.settings.field)
@@ -98,11 +84,7 @@ class PassingTask(SoccerTask):
         super()._judge(actions, rewards, ends)
         new = self._count() & going & ~(ends.terminated & ~ends.success)
         self._passes += new
-        earned = self.settings.reward.passed * new
-        rewards += earned
-        self._shares += earned[:, None]
-        self._progress["total_reward"] += earned
-        self._term_rows.view(TERMS)["passed"][:, 0] += earned
+        self._pay("passed", self.settings.reward.passed, new, rewards)
         done = new & (self._passes >= self.settings.passes)
         # Having kept the ball is no success here.
         ends.success[going] = done[going]

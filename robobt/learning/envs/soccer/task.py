@@ -12,11 +12,11 @@ from robobt.learning.envs.judging import fresh, parameters, report_of
 from robobt.learning.envs.soccer.judge import JUDGED, MIND, TERMS, JudgedPlay, judge
 from robobt.learning.envs.soccer.letting_go import let_go
 from robobt.learning.envs.soccer.restarts import Restarts
-from robobt.learning.envs.soccer.rewards import REWARD_MEMORY
+from robobt.learning.envs.soccer.rewards import REWARD_MEMORY, SoccerReward
 from robobt.learning.envs.soccer.settings import AIMS, GOALKEEPER, PLAY_ROLE, SoccerSettings
 from robobt.learning.envs.soccer.starts import columns_of, soccer_starts
 from robobt.learning.envs.starts import split
-from robobt.learning.envs.task import EpisodeEnds, FloatArray, IntArray, StepResult
+from robobt.learning.envs.task import BoolArray, EpisodeEnds, FloatArray, IntArray, StepResult
 from robobt.learning.opponents.challengers import Challengers
 from robobt.learning.opponents.field_players import FieldPlayers
 from robobt.learning.opponents.keepers import GOALKEEPER_TRAITS, Keepers
@@ -59,7 +59,7 @@ class SoccerTask(ArenaTask):
             JUDGED,
             settings=settings,
             field=field,
-            weights=settings.reward,
+            weights=self._judged_weights(settings.reward),
             rules=settings.rules,
             aim=AIMS.index(settings.aim),
             blue=self.blue,
@@ -208,6 +208,18 @@ class SoccerTask(ArenaTask):
             self._go_on(np.flatnonzero(restarts.stops * ~ends.over), before)
             self._perception.put(arenas.robots, arenas.balls, put)
         return ended
+
+    def _judged_weights(self, weights: SoccerReward) -> SoccerReward:
+        """Return the weights of the terms that are judged here; a subclass may :meth:`_pay` others itself."""
+        return weights
+
+    def _pay(self, term: str, weight: float, which: BoolArray, rewards: FloatArray) -> None:
+        """Add a term's ``weight`` to all learners' rewards and to ``rewards`` (n,), where ``which`` (n,)."""
+        earned: FloatArray = np.where(which, weight, 0.0)
+        rewards += earned
+        self._shares += earned[:, None]
+        self._progress["total_reward"] += earned
+        self._term_rows.view(TERMS)[term][:, 0] += earned
 
     def _go_on(self, which: IntArray, before: FloatArray) -> None:
         """Continue stopped play with a restart; balls were at ``before`` (n, 2) [m]."""

@@ -12,19 +12,19 @@ from robobt.world.geometry import Point, distance, segment_distance
 from robobt.world.rules import PLACED_DISTANCE, STOP_DISTANCE
 from robobt.world.state import ROBOT_RADIUS, RobotId
 
-_SOONEST = 2.0
+SOONEST = 2.0
 """Least duration of a placement [s]. Source: SSL rules."""
 
-_OWN_GAP = 0.05
+OWN_GAP = 0.05
 """Least distance of robots from the ball when their free kick follows [m]. Source: SSL rules."""
 
-_AVERAGE_SMOOTHING, _STILL_DISTANCE = 0.97, 0.005
+AVERAGE_SMOOTHING, STILL_DISTANCE = 0.97, 0.005
 """Weight of the past in the ball's moving average, and largest distance of a resting ball from it [m].
 
 Source: AutoReferee.
 """
 
-_LEARNT_AT = 0.01
+LEARNT_AT = 0.01
 """Frame length of the moving average [s]."""
 
 _PLACEMENT_WAY_DISTANCE = STOP_DISTANCE + ROBOT_RADIUS
@@ -55,19 +55,19 @@ class PlacementSucceeded(Rule):
     def check(self, scene: RefereeScene) -> Iterable[RefereeEvent]:
         """Report success once."""
         ball = scene.frame.ball.position
-        share = _AVERAGE_SMOOTHING ** (scene.frame.period / _LEARNT_AT)
+        share = AVERAGE_SMOOTHING ** (scene.frame.period / LEARNT_AT)
         mean = self._mean = (
             share * self._mean[0] + (1.0 - share) * ball[0],
             share * self._mean[1] + (1.0 - share) * ball[1],
         )
         spot, team = scene.game.placement, scene.game.restart_team
-        if self._told or spot is None or team is None or scene.elapsed < _SOONEST:
+        if self._told or spot is None or team is None or scene.elapsed < SOONEST:
             return
         precision = distance(ball, spot)
-        if precision > PLACED_DISTANCE or distance(ball, mean) > _STILL_DISTANCE:
+        if precision > PLACED_DISTANCE or distance(ball, mean) > STILL_DISTANCE:
             return
         own = scene.game.next_team is team
-        reach = ROBOT_RADIUS + (_OWN_GAP if own else STOP_DISTANCE)
+        reach = ROBOT_RADIUS + (OWN_GAP if own else STOP_DISTANCE)
         for robot in (*scene.frame.own, *scene.frame.opponents):
             if hypot(robot.x - ball[0], robot.y - ball[1]) < reach:
                 return

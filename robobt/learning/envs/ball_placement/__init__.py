@@ -1,0 +1,1 @@
+"""The ball placement challenge of 2023 for learners."""

@@ -1,0 +1,1 @@
+"""The cooperation challenge of 2026 for learners."""
