@@ -64,6 +64,7 @@ from robobt.skills.conditions.has_ball import HasBall as HasBall
 from robobt.skills.conditions.is_closest_to_ball import IsClosestToBall as IsClosestToBall
 from robobt.skills.conditions.is_halted import IsHalted as IsHalted
 from robobt.skills.conditions.is_restart import IsRestart as IsRestart
+from robobt.skills.conditions.is_second_to_ball import IsSecondToBall as IsSecondToBall
 from robobt.skills.conditions.may_touch_ball import MayTouchBall as MayTouchBall
 from robobt.skills.conditions.opponent_has_ball import OpponentHasBall as OpponentHasBall
 from robobt.skills.conditions.small_team import SmallTeam as SmallTeam

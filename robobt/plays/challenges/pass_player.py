@@ -9,8 +9,11 @@ from robobt.skills.ball.kick_loose import KickLoose
 from robobt.skills.ball.kick_to_target import KickToTarget
 from robobt.skills.ball.pick_up_ball import PickUpBall
 from robobt.skills.ball.settle_ball import SettleBall
+from robobt.skills.conditions.is_second_to_ball import IsSecondToBall
 from robobt.skills.conditions.may_touch_ball import MayTouchBall
+from robobt.skills.conditions.opponent_has_ball import OpponentHasBall
 from robobt.skills.defence.avoid_crash import AvoidCrash
+from robobt.skills.defence.challenge_ball import ChallengeBall
 from robobt.skills.restarts.go_to_kickoff_position import GoToKickoffPosition
 from robobt.skills.restarts.keep_distance import KeepDistance
 from robobt.skills.restarts.prepare_restart import PrepareRestart
@@ -27,8 +30,9 @@ from robobt.tree import Behaviour, Sequence
 def pass_player(
     *, enough: float = 0.6, patience: float = 1.0, quickest: float = 1.5, reaction: float = 0.25
 ) -> Behaviour:
-    """Keep the ball in the team by passes of at least 1.15 m, and never shoot, within the referee's commands.
+    """Keep the ball in the team by passes of at least 1.3 m, and never shoot, within the referee's commands.
 
+    While the opponents have the ball, one robot goes for it and another stands in its way.
     Any number of robots may play it; it needs no goalkeeper.
 
     Args:
@@ -59,6 +63,11 @@ def pass_player(
         ),
         PrepareRestart(stay=True),
     )
+    off_the_ball = first_of(
+        "off the ball",
+        when("challenge", OpponentHasBall(), IsSecondToBall(), ChallengeBall()),
+        ShowForPass(),
+    )
     player = TaskSwitch(
         "part",
         {
@@ -72,7 +81,7 @@ def pass_player(
             ),
             "attack": attack,
         },
-        otherwise=ShowForPass(),
+        otherwise=off_the_ball,
         tactics=TacticsSettings(quickest=quickest, reaction=reaction),
     )
     return AvoidCrash("no crash", player)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import field
-from math import hypot, pi
+from math import hypot, inf, pi
 
 import numpy as np
 
@@ -15,24 +15,33 @@ from robobt.skills.tactics.keeping import SHORTEST, KeepingPlaces, rate_receptio
 from robobt.tree import Status
 from robobt.world.rules import has_ball
 
+_KICK_DELAY = 0.15
+"""Time until the kick of a robot that is turned to its receiver [s]."""
+
+_TACKLE_SPREAD, _TACKLE_MARGIN = 0.2, 0.15
+"""How gradually passes count less that come after a tackle, and how soon before one waiting ends [s]."""
+
 
 @skill
 class ChooseSafePass(Skill):
     """Write the safest pass to ``pass_``, and None to ``shot``. FAILURE while none is good enough.
 
-    A pass is worth its chance to arrive times how free its receiver then is. What is good enough falls with
-    the time that the robot has had the ball; an opponent close by ends the waiting.
+    A pass is worth its chance to arrive times how free its receiver then is. It is kicked only when the robot
+    has turned to it, so while the robot has the ball, passes that an opponent may prevent by then count less.
+    What is good enough falls with the time that the robot has had the ball; an opponent close by, or one that
+    may be there before the kick, ends the waiting.
 
     Args:
         enough: worth from which a pass is played at once, 0 to 1.
         least: worth below which no pass is played.
         patience: time in which ``enough`` falls to ``least`` [s].
         pressed: distance of an opponent from the ball that ends the waiting [m].
+        turn_speed: how fast the robot is assumed to turn with the ball [rad/s].
         every: time between two ratings [s].
         keep: factor on the worth of a pass to the receiver that was chosen last.
 
     Raises:
-        ValueError: ``patience`` is not positive.
+        ValueError: ``patience`` or ``turn_speed`` is not positive.
     """
 
     reads = ("team",)
@@ -42,6 +51,7 @@ class ChooseSafePass(Skill):
     least: float = 0.05
     patience: float = 1.0
     pressed: float = 0.45
+    turn_speed: float = 4.0
     every: float = 0.05
     keep: float = 1.25
     _pass: Pass | None = field(default=None, init=False)
@@ -50,8 +60,9 @@ class ChooseSafePass(Skill):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        if not self.patience > 0.0:
-            raise ValueError(f"patience must be positive, not {self.patience}")
+        for setting in ("patience", "turn_speed"):
+            if not getattr(self, setting) > 0.0:
+                raise ValueError(f"{setting} must be positive, not {getattr(self, setting)}")
         self._look = RateLimit(self.every)
 
     def on_running(self) -> Status:
@@ -93,15 +104,23 @@ class ChooseSafePass(Skill):
             return
         at = np.array(points)
         turn = np.abs((np.arctan2(at[:, 1] - ball.y, at[:, 0] - ball.x) - me.heading + pi) % (2.0 * pi) - pi)
-        rated = rate_receptions(at, ball.x, ball.y, 0.15, plan.their_movers, plan.numbers)
-        worth = worth_of(rated) * (1.0 - 0.1 * turn / pi)
+        delays = _KICK_DELAY + turn / self.turn_speed
+        rated = rate_receptions(at, ball.x, ball.y, delays, plan.their_movers, plan.numbers)
+        rank = worth = worth_of(rated)
         if last is not None:
-            worth = worth * np.where(np.array(owners) == last.receiver, self.keep, 1.0)
-        best = int(worth.argmax())
+            rank = rank * np.where(np.array(owners) == last.receiver, self.keep, 1.0)
         held = has_ball(me, ball)
+        tackled = min(plan.their_times.values(), default=inf) if held else inf
+        if held:
+            in_time = (tackled - delays) / _TACKLE_SPREAD
+            rank = rank / (1.0 + np.exp(-np.clip(in_time, -30.0, 30.0)))
+        else:
+            rank = rank * (1.0 - 0.1 * turn / pi)
+        best = int(rank.argmax())
         waited = min(1.0, (frame.time - self._since) / self.patience)
         enough = self.least + (self.enough - self.least) * (1.0 - waited)
-        if held and any(hypot(r.x - ball.x, r.y - ball.y) < self.pressed for r in frame.opponents):
+        near = any(hypot(r.x - ball.x, r.y - ball.y) < self.pressed for r in frame.opponents)
+        if held and (near or tackled < delays[best] + _TACKLE_MARGIN):
             enough = self.least
         if worth[best] >= enough:
             self._pass = Pass(owners[best], points[best], float(rated[best, 1]), float(worth[best]), 0.0)

@@ -21,7 +21,7 @@ from robobt.world.records import mover_records
 from robobt.world.rules import in_own_defense_area, in_their_defense_area
 from robobt.world.state import Frame
 
-SHORTEST = 1.15
+SHORTEST = 1.3
 """Shortest pass that is tried [m]; passes from 1 m count in the passing challenge."""
 
 FREE_TIME = 0.8
@@ -49,18 +49,19 @@ _PREFERRED_X, _PREFERENCE_WIDTH = -0.3, 0.5
 
 @compiled
 def rate_receptions(
-    points: FloatArray, ox: float, oy: float, delay: float, opponents_: FloatArray, numbers: FloatArray
+    points: FloatArray, ox: float, oy: float, delays: FloatArray, opponents_: FloatArray, numbers: FloatArray
 ) -> FloatArray:
     """Return (G, 3) for passes from (ox, oy) to points (G, 2): chance, kick speed [m/s], free time [s].
 
-    ``delay`` is the time until the kick [s]. The free time is by how much the receiver is ahead of the
-    opponent that gets to the point first.
+    ``delays`` (G,) are the times until the kicks [s]. The free time is by how much the receiver is ahead of
+    the opponent that gets to the point first.
     """
     rated = np.zeros((len(points), 3))
     tactics: AppliedTactics = numbers.view(TACTICS)[0]
     opponents = mover_records(opponents_)
     for g in range(len(points)):
         x, y = points[g]
+        delay = delays[g]
         length = hypot(x - ox, y - oy)
         speed = kick_speed(length, min(tactics.receive_speed, 1.2 + 0.3 * length), tactics)
         flight = flight_time(length, speed, tactics)
@@ -117,7 +118,8 @@ class KeepingPlaces:
         ]
         stays = np.arange(len(points)) >= len(points) - len(self._chosen)
         points, stays = points[inside], stays[inside]
-        value = worth_of(rate_receptions(points, ox, oy, 0.3, plan.their_movers, plan.numbers)) + 0.01
+        delays = np.full(len(points), 0.3)
+        value = worth_of(rate_receptions(points, ox, oy, delays, plan.their_movers, plan.numbers)) + 0.01
         length = np.hypot(points[:, 0] - ox, points[:, 1] - oy)
         value *= np.clip(1.25 - 0.15 * length, 0.5, 1.0)
         value *= 1.0 / (1.0 + np.exp((points[:, 0] - _PREFERRED_X) / _PREFERENCE_WIDTH))

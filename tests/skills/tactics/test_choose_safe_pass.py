@@ -28,7 +28,7 @@ class Keeper:
 
 def test_it_passes_to_the_mate_that_nobody_marks() -> None:
     marked, free = robot(-0.5, 0.0, number=2), robot(-2.0, 1.6, number=3)
-    keeper = Keeper(ChooseSafePass(enough=0.2), marked, free)
+    keeper = Keeper(ChooseSafePass(enough=0.05), marked, free)
     assert keeper.at(0.0, robot(-0.8, 0.1, number=5)) is Status.SUCCESS
     store = keeper.alone.store
     assert store.pass_ is not None
@@ -57,10 +57,29 @@ def test_an_opponent_close_by_ends_the_waiting() -> None:
     assert keeper.at(0.0, opponent, robot(-2.3, 0.2, number=6)) is Status.SUCCESS
 
 
+def test_a_pressed_robot_passes_where_it_looks() -> None:
+    mates = robot(0.2, 0.0, number=2), robot(-3.7, 0.0, number=3)
+    marker, presser = robot(0.2, 0.8, number=5), robot(-2.0, 0.45, number=6)
+    for theirs, receiver in (((marker,), 3), ((marker, presser), 2)):
+        keeper = Keeper(ChooseSafePass(enough=0.01, least=0.01), *mates)
+        assert keeper.at(0.0, *theirs) is Status.SUCCESS
+        chosen = keeper.alone.store.pass_
+        assert chosen is not None
+        assert chosen.receiver == receiver
+
+
+@pytest.mark.parametrize(("speed", "status"), [(0.0, Status.FAILURE), (-2.0, Status.SUCCESS)])
+def test_an_opponent_that_comes_before_the_kick_ends_the_waiting(speed: float, status: Status) -> None:
+    comes = robot(-0.9, -0.2, number=6, velocity=(speed, 0.0, 0.0))
+    keeper = Keeper(ChooseSafePass(enough=1.0, least=0.01), robot(-2.0, 1.6, number=3))
+    assert keeper.at(0.0, comes) is status
+
+
 def test_without_a_mate_there_is_no_pass() -> None:
     assert Keeper(ChooseSafePass()).at(0.0) is Status.FAILURE
 
 
-def test_patience_is_positive() -> None:
-    with pytest.raises(ValueError, match="patience must be positive"):
-        ChooseSafePass(patience=0.0)
+@pytest.mark.parametrize("setting", ["patience", "turn_speed"])
+def test_times_and_speeds_are_positive(setting: str) -> None:
+    with pytest.raises(ValueError, match=f"{setting} must be positive"):
+        ChooseSafePass(**{setting: 0.0})
