@@ -12,7 +12,7 @@ from robobt.challenges.handover import JUNIOR_ROW, MAJOR_ROW, Handover
 from robobt.learning.envs.arena_task import Policy
 from robobt.learning.envs.judging import goals
 from robobt.learning.envs.scripted import TAKEN_DISTANCE
-from robobt.learning.envs.soccer.rewards import SoccerReward
+from robobt.learning.envs.soccer.rewards import REWARD_MEMORY, SoccerReward
 from robobt.learning.envs.soccer.settings import LEARNER, Role, SoccerRules, SoccerSettings
 from robobt.learning.envs.soccer.task import SoccerTask
 from robobt.learning.envs.starts import MOUTH_GAP, places_of, start_parts
@@ -29,15 +29,16 @@ class CooperationSettings(SoccerSettings):
     """Two robots score together: the first shoots the ball, then the other shoots it into the empty goal.
 
     Success is a goal of the second robot with no rule of the challenge broken, after the first has shot.
-    Until then the second robot stands still whatever its policy says. Any other goal, a ball out, a ball
-    faster than 3.5 m/s or carried for more than 1 m, and a robot that touches a defence area end the episode.
+    Until then the second robot stands still whatever its policy says, and the first from then on. Any other
+    goal, a ball out, a ball faster than 3.5 m/s or carried for more than 1 m, and a robot that touches a
+    defence area end the episode.
 
     Of the reward's terms ``sent`` is for the first robot's shot, ``passed`` for the second's first touch
-    after it, and ``goal`` for a success; both robots earn them.
+    after it, and ``goal`` for a success; ``shot`` is for the second robot only. Both robots earn all terms.
     """
 
     blue: tuple[Role, ...] = (LEARNER, LEARNER)
-    action: ActionScaling = SCORE_ACTION.model_copy(update={"max_speed": 2.0, "kick_speed": 3.0})
+    action: ActionScaling = SCORE_ACTION.model_copy(update={"max_speed": 1.2, "kick_speed": 3.0})
     time_limit: int = 500
     spread: float = Field(
         0.5,
@@ -54,8 +55,8 @@ class CooperationSettings(SoccerSettings):
     held: float = Field(
         0.3, ge=0, le=1, description="share of starts with the ball in the first robot's mouth"
     )
-    rules: SoccerRules = SoccerRules(held_by=None, dribbling=1.0)
-    reward: SoccerReward = SoccerReward(fault=0.3, sent=1.0, passed=2.0, shot=0.0)
+    rules: SoccerRules = SoccerRules(held_by=None, dribbling=1.0, let_go=0.9)
+    reward: SoccerReward = SoccerReward(fault=0.5, approach=0.1, sent=1.0, passed=2.0, shot=2.0, shared=1.0)
 
 
 class CooperationTask(SoccerTask):
@@ -117,12 +118,14 @@ class CooperationTask(SoccerTask):
         self._handover.restart(which)
         _, _, rest = start_parts(np.ascontiguousarray(starts), self.robots)
         self._handover.shot[which] = rest[:, 0] > 0.0
+        # The first robot's kicks at the goal are not to be rewarded: it is to pass.
+        self._memories.view(REWARD_MEMORY)["shots"][which, MAJOR_ROW] = np.inf
 
     def oppose(self, commands: FloatArray) -> None:
-        """Let the second robot stand still until the first has shot."""
+        """Let the second robot stand still until the first has shot, and the first from then on."""
         super().oppose(commands)
         self._balls = self.arenas.balls.copy()
-        commands[~self._handover.shot, JUNIOR_ROW] = 0.0
+        commands[self._all, np.where(self._handover.shot, MAJOR_ROW, JUNIOR_ROW)] = 0.0
 
     def _judge(self, actions: FloatArray, rewards: FloatArray, ends: EpisodeEnds) -> bool:
         told, reward, going = self._handover, self.settings.reward, ~ends.over
@@ -184,6 +187,4 @@ class CooperationTask(SoccerTask):
             actions[:, index, :2] = speed[:, None] * ball / far[:, None]
             actions[:, index, 2] = np.clip(3.0 * off, -2.0, 2.0) / self.action.max_turn
             actions[:, index, 3] = np.where(held & (np.abs(off) < 0.05), 1.0, -1.0)
-        done = self._handover.shot
-        actions[done, MAJOR_ROW, :3], actions[done, MAJOR_ROW, 3] = 0.0, -1.0
         return actions.reshape(len(observation), -1)
