@@ -5,7 +5,7 @@ Source: RoboCup SSL rules, chapter "Ball Placement": 0.5 m from the segment betw
 
 from __future__ import annotations
 
-from robobt.world.game import Restart
+from robobt.world.game import BALL_PLACEMENT
 from robobt.world.geometry import (
     Point,
     closest_point_on_segment,
@@ -31,10 +31,12 @@ def outside_stadium(frame: Frame, me: RobotState, goal: Point) -> Point:
     """
     game = frame.game
     spot = game.placement
-    if game.restart is not Restart.BALL_PLACEMENT or game.restart_team is frame.team or spot is None:
+    if game.restart is not BALL_PLACEMENT or game.restart_team is frame.team or spot is None:
         return goal
     ball = frame.ball.position
     keep = STOP_DISTANCE + ROBOT_RADIUS + _STADIUM_MARGIN
+    if _are_apart(me.position, goal, ball, spot, keep + 1e-6):
+        return goal
     here = closest_point_on_segment(me.position, ball, spot)
     gap = distance(here, me.position)
     if gap < keep and segment_distance(goal, ball, spot) >= keep:
@@ -45,3 +47,14 @@ def outside_stadium(frame: Frame, me: RobotState, goal: Point) -> Point:
     if segments_distance(me.position, goal, ball, spot) < keep:
         return me.position
     return goal
+
+
+def _are_apart(start: Point, end: Point, other_start: Point, other_end: Point, gap: float) -> bool:
+    """Return whether two segments are certainly farther apart than ``gap`` [m]: in x alone, or in y."""
+    (ax, ay), (bx, by), (cx, cy), (dx, dy) = start, end, other_start, other_end
+    return (
+        min(ax, bx) - max(cx, dx) > gap
+        or min(cx, dx) - max(ax, bx) > gap
+        or min(ay, by) - max(cy, dy) > gap
+        or min(cy, dy) - max(ay, by) > gap
+    )

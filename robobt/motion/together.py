@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import NamedTuple
+from typing import TypeAlias
 
 import numpy as np
 
 from robobt.motion.path_planner import travel_law
-from robobt.motion.scene import BALL_GAP, scene_of, trip_numbers
+from robobt.motion.scene import scene_of, trip_numbers
 from robobt.motion.stadium import outside_stadium
 from robobt.world.command import RobotCommand
 from robobt.world.compiled import compiled
@@ -16,21 +16,8 @@ from robobt.world.geometry import FloatArray, Point
 from robobt.world.records import LIMITS, SCENE, TRIP, limits_of, mover_records, movers_of
 from robobt.world.state import Frame, RobotState
 
-
-class TeamWay(NamedTuple):
-    """A robot's way round robots and the ball.
-
-    Attributes:
-        me: the robot.
-        target: where to [m].
-        heading: where the mouth is to point [rad].
-        ball_gap: how far to stay from the ball, hull to ball [m].
-    """
-
-    me: RobotState
-    target: Point
-    heading: float
-    ball_gap: float = BALL_GAP
+TeamWay: TypeAlias = tuple[RobotState, Point, float, float]
+"""A robot, its target [m], where its mouth is to point [rad], and how far it stays from the ball [m]."""
 
 
 def travel_together(
@@ -48,7 +35,7 @@ def travel_together(
         goal = outside_stadium(frame, me, target)
         numbers += trip_numbers(me, goal, heading, avoid_ball=True, ball_gap=ball_gap)
     trips = np.array(numbers, dtype=np.float64).reshape(len(ways), -1)
-    limits = [way.me.limits for way in ways]
+    limits = [me.limits for me, _, _, _ in ways]
     # One row for all where they have the same limits.
     alike = all(each is limits[0] for each in limits)
     own = limits_of(limits[0])[None] if alike else np.stack([limits_of(each) for each in limits])

@@ -15,6 +15,7 @@ from robobt.sim.sight import Sight
 from robobt.world.command import KickTrigger, RobotCommand
 from robobt.world.detections import Detections
 from robobt.world.field import FieldGeometry
+from robobt.world.frame_numbers import FrameNumbers
 from robobt.world.game import Team
 from robobt.world.geometry import FloatArray, wrap_angles
 from robobt.world.limits import RobotLimits
@@ -53,6 +54,7 @@ class SimWorld(World):
         blue = sum(robot.team is Team.BLUE for robot in self._ids)
         self._blue = [(robot.number, self._limits[i]) for i, robot in enumerate(self._ids) if i < blue]
         self._yellow = [(robot.number, self._limits[i]) for i, robot in enumerate(self._ids) if i >= blue]
+        self._numbers = FrameNumbers(self._blue, self._yellow)
         realism = self.settings.realism
         self._delayed = realism.vision_delay > 0.0
         self._noisy = any((realism.ball_noise, realism.robot_noise, realism.heading_noise))
@@ -143,7 +145,10 @@ class SimWorld(World):
         """Return the simulated state itself."""
         arenas = self._arenas
         z, vz, _ = arenas.flight[0].tolist()
-        return self._frame(arenas.robots[0].tolist(), [*arenas.balls[0].tolist(), z, vz])
+        frame = self._frame(arenas.robots[0].tolist(), [*arenas.balls[0].tolist(), z, vz])
+        if not self._taken:
+            self._numbers.give(frame, arenas.robots[0], arenas.contact[0])
+        return frame
 
     def act(self, commands: Mapping[RobotId, RobotCommand]) -> None:
         """Send the commands and simulate one control period.

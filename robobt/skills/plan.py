@@ -34,6 +34,10 @@ class Task(StrEnum):
     """Waits where a pass can reach it and is useful."""
 
 
+# CPython 3.11 takes forty times as long to find a member in its enumeration as a name of this module.
+ATTACK, RECEIVE, MARK, SUPPORT = Task.ATTACK, Task.RECEIVE, Task.MARK, Task.SUPPORT
+
+
 Omitted: TypeAlias = Literal[
     "nothing", "wall", "marks", "short_place", "one_touch", "kick_loose", "score", "draw", "avoid_crash"
 ]

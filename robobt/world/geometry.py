@@ -46,13 +46,16 @@ def distance(a: Point, b: Point) -> float:
 @compilable
 def closest_point_on_segment(point: Point, start: Point, end: Point) -> Point:
     """Return the point of the segment nearest to ``point``; ``start`` for a segment of no length."""
-    dx, dy = end[0] - start[0], end[1] - start[1]
+    (px, py), (x, y), (end_x, end_y) = point, start, end
+    dx, dy = end_x - x, end_y - y
     length_squared = dx * dx + dy * dy
     if length_squared <= 0.0:
         return start
-    share = ((point[0] - start[0]) * dx + (point[1] - start[1]) * dy) / length_squared
-    share = min(1.0, max(0.0, share))
-    return (start[0] + share * dx, start[1] + share * dy)
+    share = ((px - x) * dx + (py - y) * dy) / length_squared
+    # In place of min and max, which Python takes longer to call.
+    share = share if share > 0.0 else 0.0
+    share = share if share < 1.0 else 1.0
+    return (x + share * dx, y + share * dy)
 
 
 @compilable

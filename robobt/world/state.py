@@ -39,6 +39,9 @@ GOAL_HEIGHT = 0.155
 MIRRORED_FROM = "mirrored from"
 """Where :attr:`Frame.made` holds the frame of which it is the mirror image."""
 
+PACKED = "packed"
+"""Where :attr:`Frame.made` holds the result of :meth:`Frame.packed`, if it has been made already."""
+
 
 class RobotId(NamedTuple):
     """A robot's team and its number on that team."""
@@ -190,6 +193,9 @@ class Frame(Derived):
         Time; x, y, vx, vy of the ball; how many own robots there are, and the id, x, y, heading,
         vx, vy, omega and ball contact of each; these values for the opponents; z and vz of a ball in the air.
         """
+        made: bytes | None = self.made.get(PACKED)
+        if made is not None:
+            return made
         ball = self.ball
         numbers = [self.time, ball.x, ball.y, ball.vx, ball.vy]
         for robots in (self.own, self.opponents):

@@ -11,7 +11,7 @@ from robobt.motion.arrival import meetings
 from robobt.motion.meetings import meetings_of
 from robobt.motion.path_planner import travel
 from robobt.motion.scene import BALL_GAP
-from robobt.motion.together import TeamWay, travel_together
+from robobt.motion.together import travel_together
 from robobt.testing import frame
 from robobt.world import DIVISION_B, BallState, Frame, RefereeCommand, Restart, RobotLimits, RobotState, Team
 from robobt.world.game import GameState
@@ -48,9 +48,7 @@ def test_ways_found_together_are_those_that_each_robot_finds(game: GameState | N
     for seed in range(40):
         view = crowd(seed, game)
         robots = [me for me in view.own if not alike or me.id % 2]
-        ways = [
-            TeamWay(me, (0.5 * me.id, -1.0), 0.3 * me.id, 0.1 if me.id == 3 else BALL_GAP) for me in robots
-        ]
+        ways = [(me, (0.5 * me.id, -1.0), 0.3 * me.id, 0.1 if me.id == 3 else BALL_GAP) for me in robots]
         alone = [
             travel(view, me, to, heading, me.limits, avoid_ball=True, ball_gap=gap, spare_mates=True)
             for me, to, heading, gap in ways

@@ -11,6 +11,8 @@ from robobt.sim import PRESETS, REALISM, SimWorld, preset
 from robobt.sim.realism import RealismSettings
 from robobt.world import BALL_RADIUS, DIVISION_B, Placement, RobotCommand, RobotId, Team, World
 from robobt.world.command import CHIP_ANGLE
+from robobt.world.limits import DEFAULT_LIMITS
+from robobt.world.records import movers_of
 from tests.sim.rig import IT, ME, holding, one_robot
 
 
@@ -54,6 +56,28 @@ def test_it_goes_on_from_a_moment() -> None:
     assert (ball.z, ball.vz, ball.vx) == (0.3, 1.0, 2.0)
     world.act({})
     assert world.truth().time == pytest.approx(61.5 + 1 / 60)
+
+
+@pytest.mark.parametrize("flight", [(0.0, 0.0), (0.3, 1.0)], ids=["on the ground", "in the air"])
+def test_its_frames_have_the_numbers_that_they_would_make_themselves(flight: tuple[float, float]) -> None:
+    quick = DEFAULT_LIMITS.model_copy(update={"max_speed": 4.0})
+    world = SimWorld(DIVISION_B, {ME: quick, IT: None}, period=1 / 60)
+    poses = {ME: (-1.0, 0.5, 0.3), IT: (1.0, -0.2, 3.0)}
+    world.reset(Placement(poses, (0.1, 0.2, 1.0, 0.0), velocities={ME: (1.0, 0.5)}, flight=flight), seed=1)
+    world.act({ME: RobotCommand(1.0, 0.5, 2.0)})
+    frame = world.truth()
+    packed, everybody = frame.packed(), movers_of(frame)
+    frame.made.clear()
+    assert packed == frame.packed()
+    assert np.array_equal(everybody, movers_of(frame))
+
+
+def test_a_frame_without_a_robot_that_was_taken_away_has_no_numbers_of_it() -> None:
+    world = pair()
+    world.take_robot(IT)
+    frame = world.truth()
+    assert len(movers_of(frame)) == 1
+    assert len(frame.packed()) == 8 * (7 + 8)
 
 
 def test_a_ball_that_slides_at_the_start_slows_down_sooner() -> None:

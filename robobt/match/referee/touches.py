@@ -7,6 +7,9 @@ from robobt.world.geometry import Point, distance
 from robobt.world.rules import keeps_ball, touches
 from robobt.world.state import BallState, Frame, RobotId, RobotState
 
+_TOUCH_BOX = 0.2
+"""A robot farther from the ball in x or y neither touches nor keeps it [m]."""
+
 
 class Touches:
     """Tracks touches of the ball from frame to frame; frames are seen from blue's side.
@@ -35,17 +38,9 @@ class Touches:
     def watch(self, frame: Frame) -> None:
         """Take in the next frame."""
         ball = frame.ball
-        x, y = ball.x, ball.y
-        touching = []
-        carrier: RobotState | None = None
-        for team, robots in ((frame.team, frame.own), (frame.team.other, frame.opponents)):
-            for robot in robots:
-                if -0.2 < robot.x - x < 0.2 and -0.2 < robot.y - y < 0.2:
-                    identity = RobotId(team, robot.id)
-                    if touches(robot, ball):
-                        touching.append(identity)
-                    if identity == self.carrier:
-                        carrier = robot
+        at_ball = _at_ball(frame)
+        touching = [identity for identity, robot in at_ball if touches(robot, ball)]
+        carrier = next((robot for identity, robot in at_ball if identity == self.carrier), None)
         self.now = touching
         toucher = frame.last_touch
         if toucher is None and touching and self.last not in touching:
@@ -79,3 +74,17 @@ class Touches:
         self.carrier = self.last if self.last in self.now else None
         self.carry_start = ball.position
         self.carried = 0.0
+
+
+def _at_ball(frame: Frame) -> list[tuple[RobotId, RobotState]]:
+    """Return the robots that may touch the ball or keep it; looked for once a frame."""
+    found: list[tuple[RobotId, RobotState]] | None = frame.made.get("at ball")
+    if found is None:
+        x, y = frame.ball.x, frame.ball.y
+        found = frame.made["at ball"] = [
+            (RobotId(team, robot.id), robot)
+            for team, robots in ((frame.team, frame.own), (frame.team.other, frame.opponents))
+            for robot in robots
+            if -_TOUCH_BOX < robot.x - x < _TOUCH_BOX and -_TOUCH_BOX < robot.y - y < _TOUCH_BOX
+        ]
+    return found

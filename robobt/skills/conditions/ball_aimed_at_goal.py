@@ -28,14 +28,12 @@ class BallAimedAtGoal(Condition):
 
     def on_running(self) -> Status:
         """Look at every other robot's heading."""
-        field, ball, number = self.frame.field, self.ball, self.me.id
-        for robots in (self.frame.opponents, self.frame.own):
-            for robot in robots:
-                if robots is self.frame.own and robot.id == number:
-                    continue
-                if has_ball(robot, ball) and not isnan(y := aimed_at(robot, ball, field)):
-                    self.store.target = (ROBOT_RADIUS - field.half_length, y)
-                    return self.succeed(f"robot {robot.id} aims at y = {y:.2f}")
+        frame = self.frame
+        field, ball = frame.field, frame.ball
+        for robot in (*frame.opponents, *frame.teammates(self.me.id)):
+            if has_ball(robot, ball) and not isnan(y := aimed_at(robot, ball, field)):
+                self.store.target = (ROBOT_RADIUS - field.half_length, y)
+                return self.succeed(f"robot {robot.id} aims at y = {y:.2f}")
         return self.fail("nobody aims at our goal")
 
 

@@ -8,20 +8,20 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from math import inf
-from typing import NamedTuple
+from typing import TypeAlias
 
 import numpy as np
 
 from robobt.motion.meetings import meetings_of
 from robobt.skills.aim.goalkeeper_watch import GoalkeeperWatch
 from robobt.skills.kicker import follow_restart
-from robobt.skills.plan import Task, TeamPlan
+from robobt.skills.plan import ATTACK, MARK, SUPPORT, Task, TeamPlan
 from robobt.skills.store import Pass, TeamStore
 from robobt.skills.tactics.assignment import NO_JOB, jobs_of
 from robobt.skills.tactics.attacker import NOBODY, AttackerCandidate, choose_attacker, may_be_attacked
 from robobt.skills.tactics.defence import mark_places, threats, wall_places
 from robobt.skills.tactics.support import short_place, support_places
-from robobt.world.game import Restart
+from robobt.world.game import BALL_PLACEMENT
 from robobt.world.geometry import Point, distance
 from robobt.world.records import MEETING, MOVER, movers_of
 from robobt.world.rules import has_ball, owner
@@ -32,6 +32,8 @@ _MOVER_NAMES = MOVER.names or ()
 _QUICKNESS = slice(_MOVER_NAMES.index("max_speed"), _MOVER_NAMES.index("acceleration") + 1)
 _TIME = (MEETING.names or ()).index("time")
 _NO_CANDIDATE = AttackerCandidate(inf, 0.0, False)
+
+_TASK_NUMBERS = {task._value_: -2 - place for place, task in enumerate(Task)}
 
 
 def agree(frame: Frame, team: TeamStore) -> TeamPlan:
@@ -107,7 +109,7 @@ def _attacker(frame: Frame, team: TeamStore, plan: TeamPlan) -> int | None:
     ball, game = frame.ball, frame.game
     if game.penalty is frame.team and game.may_touch and team.attacker in plan.own_times:
         return team.attacker
-    placing = game.restart is Restart.BALL_PLACEMENT
+    placing = game.restart is BALL_PLACEMENT
     if not placing and not may_be_attacked(ball.x, ball.y, plan.numbers):
         return None
     shot = ball.vx > plan.tactics.shot_from and not pass_under_way(frame, team)
@@ -124,9 +126,9 @@ def _attacker(frame: Frame, team: TeamStore, plan: TeamPlan) -> int | None:
         elif spot is not None:
             # No robot has the ball yet or is beyond it.
             time = distance(spot, robot.position) / 2.0
-            candidates += AttackerCandidate(time, ball.x, False)
+            candidates += (time, ball.x, False)
         else:
-            candidates += AttackerCandidate(plan.own_times[robot.id], robot.x, has_ball(robot, ball))
+            candidates += (plan.own_times[robot.id], robot.x, has_ball(robot, ball))
     row = choose_attacker(
         np.array(candidates, dtype=np.float64).reshape(-1, len(AttackerCandidate._fields)),
         ball.x,
@@ -151,12 +153,8 @@ def _meeting(frame: Frame, team: TeamStore, plan: TeamPlan) -> Point | None:
     return None
 
 
-class _PlacedTask(NamedTuple):
-    """A task at a place; ``what`` is the number of the opponent to mark, or the place in the wall."""
-
-    task: Task
-    place: Point
-    what: int | None = None
+_PlacedTask: TypeAlias = tuple[Task, Point, int | None]
+"""A task, its place, and the number of the opponent to mark."""
 
 
 def _share_out(frame: Frame, team: TeamStore, plan: TeamPlan, players: list[RobotState]) -> None:
@@ -164,16 +162,16 @@ def _share_out(frame: Frame, team: TeamStore, plan: TeamPlan, players: list[Robo
     if abs(frame.ball.x) > plan.tactics.ahead_from:
         plan.ahead = frame.ball.x > 0.0
     team.threats = []
-    tasks = {} if team.attacker is None else {team.attacker: Task.ATTACK}
+    tasks = {} if team.attacker is None else {team.attacker: ATTACK}
     tasks |= _meant(frame, team, plan)
     free = [robot for robot in players if robot.id not in tasks]
     jobs = _jobs(frame, team, plan, len(players), len(free)) if free else []
     marks = {}
-    for robot, job in _hand_out(frame, plan, free, jobs):
-        tasks[robot.id] = job.task
-        plan.places[robot.id] = job.place
-        if job.task is Task.MARK and job.what is not None:
-            marks[robot.id] = job.what
+    for robot, (task, place, marked) in _hand_out(frame, plan, free, jobs):
+        tasks[robot.id] = task
+        plan.places[robot.id] = place
+        if marked is not None:
+            marks[robot.id] = marked
     plan.tasks = tasks
     plan.marks = team.marks = marks
 
@@ -200,25 +198,24 @@ def _jobs(frame: Frame, team: TeamStore, plan: TeamPlan, players: int, free: int
     """Return the tasks for ``free`` of the players, the most urgent first."""
     tactics = plan.tactics
     walls = 0 if plan.without == "wall" else wall_size(plan, players, free)
-    jobs = [
-        _PlacedTask(Task.WALL, place, index) for index, place in enumerate(wall_places(frame, walls, tactics))
-    ]
+    wall = Task.WALL
+    jobs: list[_PlacedTask] = [(wall, place, None) for place in wall_places(frame, walls, tactics)]
     plan.short = None if plan.without == "short_place" else short_place(frame, plan.short, tactics)
     if (
         plan.short is not None
         and free > len(jobs)
         and not _near(plan.next_pass, plan.short, tactics.same_place)
     ):
-        jobs.append(_PlacedTask(Task.SUPPORT, plan.short))
+        jobs.append((SUPPORT, plan.short, None))
     left = free - len(jobs)
     if left and not plan.ours and plan.without != "marks":
         dangerous = threats(frame, tactics, set(plan.marks.values()))
         team.threats = [robot.id for robot in dangerous]
         marks = mark_places(frame, dangerous[: left - 1 if plan.ahead else left], tactics)
-        jobs += [_PlacedTask(Task.MARK, place, number) for number, place in marks]
+        jobs += [(MARK, place, number) for number, place in marks]
         left = free - len(jobs)
     if left:
-        jobs += [_PlacedTask(Task.SUPPORT, place) for place in support_places(frame, team, plan, left)]
+        jobs += [(SUPPORT, place, None) for place in support_places(frame, team, plan, left)]
     return jobs
 
 
@@ -230,21 +227,26 @@ def _hand_out(
         return
     waiting = {robot.id for robot in free}
     rows = [row for row, robot in enumerate(frame.own) if robot.id in waiting]
-    tasks, marks, gain = plan.tasks, plan.marks, plan.tactics.keep_gain
-    gains: list[list[float]] = []
-    for robot in free:
-        old, marked = tasks.get(robot.id), marks.get(robot.id)
-        gains.append(
-            [
-                gain if old is job.task and (old is not Task.MARK or marked == job.what) else 0.0
-                for job in jobs
-            ]
-        )
-    places = np.array([job.place for job in jobs])
-    found = jobs_of(plan.own_movers, np.array(rows), places, np.array(gains), plan.tactics.long_way)
+    tasks, marks = plan.tasks, plan.marks
+    found = jobs_of(
+        plan.own_movers,
+        np.array(rows),
+        np.array([_kind(tasks.get(robot.id), marks.get(robot.id)) for robot in free]),
+        np.array([number for _, place, _ in jobs for number in place]).reshape(-1, 2),
+        np.array([_kind(task, marked) for task, _, marked in jobs]),
+        plan.tactics.keep_gain,
+        plan.tactics.long_way,
+    )
     for robot, number in zip(free, found.tolist(), strict=True):
         if number != NO_JOB:
             yield robot, jobs[number]
+
+
+def _kind(task: Task | None, marked: int | None) -> int:
+    """Return the number of the opponent to mark, else a negative one of the task; None differs from all."""
+    if marked is not None:
+        return marked
+    return -1 if task is None else _TASK_NUMBERS[task._value_]
 
 
 def _near(intended: Pass | None, place: Point, gap: float) -> bool:

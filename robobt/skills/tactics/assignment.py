@@ -17,7 +17,13 @@ _UNASSIGNED = -1
 
 @compiled
 def jobs_of(
-    movers_: FloatArray, rows: NDArray[np.int64], places: FloatArray, gains: FloatArray, long_way: float
+    movers_: FloatArray,
+    rows: NDArray[np.int64],
+    before: NDArray[np.int64],
+    places: FloatArray,
+    kinds: NDArray[np.int64],
+    gain: float,
+    long_way: float,
 ) -> NDArray[np.int64]:
     """Return the job of each robot, (n,), so that all robots together are soonest at their places.
 
@@ -26,8 +32,10 @@ def jobs_of(
     Args:
         movers_: as of :func:`robobt.world.records.movers`.
         rows: of the robots among them, (n,).
+        before: the kind of job that each of them has had, (n,).
         places: of the jobs, (m, 2) [m].
-        gains: bonus of each robot for each job, (n, m) [s].
+        kinds: of the jobs, numbers that only have to be equal, (m,).
+        gain: bonus of a robot for a job of the kind that it has had [s].
         long_way: how much the square of a time counts, so that the longest way counts most, which avoids
             crossing ways [1/s].
     """
@@ -37,7 +45,7 @@ def jobs_of(
     for i in range(robots):
         for j in range(jobs):
             x, y = places[j]
-            time = time_to(movers[rows[i]], x, y, 0.0) - gains[i, j]
+            time = time_to(movers[rows[i]], x, y, 0.0) - (gain if kinds[j] == before[i] else 0.0)
             if few:
                 cost[i, j] = time + long_way * time * time
             else:

@@ -7,13 +7,13 @@ from enum import StrEnum
 
 from py_trees.behaviour import Behaviour
 
-from robobt.skills.plan import Omitted, Task
+from robobt.skills.plan import ATTACK, RECEIVE, SUPPORT, Omitted
 from robobt.skills.store import Store
 from robobt.skills.tactics.agree import agree
 from robobt.skills.tactics_settings import DEFAULT_TACTICS, TacticsSettings
 from robobt.tree.leaf import Bound
 from robobt.tree.nodes import Switch
-from robobt.world.game import Restart
+from robobt.world.game import BALL_PLACEMENT, KICKOFF, Restart
 
 
 class Part(StrEnum):
@@ -38,6 +38,9 @@ class Part(StrEnum):
     WALL = "wall"
     MARK = "mark"
     SUPPORT = "support"
+
+
+_LINED_UP, _DEAD_BALL = Part.KICKOFF.value, Part.DEAD_BALL.value
 
 
 class TaskSwitch(Switch, Bound[Store]):
@@ -83,19 +86,19 @@ class TaskSwitch(Switch, Bound[Store]):
             team.plan.change_tactics(self.tactics)
             team.attackers.add(number)
             team.plan.frame = team.followed = None
-        task = agree(frame, team).tasks.get(number, Task.SUPPORT)
+        task = agree(frame, team).tasks.get(number, SUPPORT)
         game = frame.game
         if game.in_play and game.penalty is None:
             return task._value_
         if game.halted:
             return Part.HALT._value_
         ours = game.restart_team is frame.team
-        first = task is Task.ATTACK
+        first = task is ATTACK
         if game.penalty is not None or game.restart is Restart.PENALTY:
             taking = first and (ours or game.penalty is frame.team)
             return Part.TAKE_PENALTY._value_ if taking else Part.PENALTY._value_
         if game.restart is not None and ours and first:
-            placing = game.restart is Restart.BALL_PLACEMENT
+            placing = game.restart is BALL_PLACEMENT
             return Part.PLACE_BALL._value_ if placing else Part.TAKE_RESTART._value_
-        lining_up = game.restart is Restart.KICKOFF and not (task is Task.RECEIVE and game.may_touch)
-        return Part.KICKOFF._value_ if lining_up else Part.DEAD_BALL._value_
+        lining_up = game.restart is KICKOFF and not (task is RECEIVE and game.may_touch)
+        return _LINED_UP if lining_up else _DEAD_BALL

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from robobt.motion.scene import BALL_GAP
-from robobt.motion.together import TeamWay, travel_together
+from robobt.motion.together import travel_together
 from robobt.skills.base import KICKER_GAP, heading_thereabouts
 from robobt.skills.plan import TeamPlan
 from robobt.skills.store import TeamStore
@@ -31,7 +31,7 @@ def _ways(frame: Frame, team: TeamStore, plan: TeamPlan) -> dict[int, RobotComma
     ball, slack, places = frame.ball.position, plan.tactics.facing, plan.places
     robots = [me for me in frame.own if me.id in plan.players and me.id in places and me.id != team.attacker]
     ways = [
-        TeamWay(
+        (
             me,
             places[me.id],
             heading_thereabouts(me, ball, slack),

@@ -8,6 +8,10 @@ from typing import Protocol, TypeAlias
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
+from robobt.tree.leaf import FAILURE as FAILURE
+from robobt.tree.leaf import INVALID as INVALID
+from robobt.tree.leaf import RUNNING as RUNNING
+from robobt.tree.leaf import SUCCESS as SUCCESS
 from robobt.tree.leaf import Leaf, no_status
 
 Tick: TypeAlias = Callable[[], Status]
@@ -15,8 +19,6 @@ Stop: TypeAlias = Callable[[Status], None]
 Visit: TypeAlias = Callable[[Behaviour], None]
 Hook: TypeAlias = Callable[..., None]
 """A node's ``initialise`` or ``terminate``."""
-
-SUCCESS, FAILURE, RUNNING, INVALID = Status.SUCCESS, Status.FAILURE, Status.RUNNING, Status.INVALID
 
 
 class BringsClosures(Protocol):

@@ -41,9 +41,9 @@ def test_jobs_go_to_the_robots_that_are_soonest_there(robots: int, jobs: int) ->
     for _ in range(50):
         states = [RobotState(i, *rng.uniform(-3.0, 3.0, 2).tolist()) for i in range(robots + 1)]
         rows, places = np.arange(1, robots + 1), rng.uniform(-3.0, 3.0, (jobs, 2))
-        gains = rng.choice((0.0, 0.8), (robots, jobs))
-        times = arrival_times(movers(states), rows, places) - gains
-        found = jobs_of(movers(states), rows, places, gains, 0.3).tolist()
+        before, kinds = rng.integers(-1, 2, robots), rng.integers(-1, 2, jobs)
+        times = arrival_times(movers(states), rows, places) - 0.8 * (before[:, None] == kinds)
+        found = jobs_of(movers(states), rows, before, places, kinds, 0.8, 0.3).tolist()
         pairs = [(robot, job) for robot, job in enumerate(found) if job != NO_JOB]
         assert pairs == assign(times + 0.3 * times * times)
 
