@@ -43,9 +43,6 @@ from robobt.world.state import Frame, RobotId
 
 _log = logging.getLogger(__name__)
 
-_CHECKED_EVERY = 60
-"""Ticks between two checks of whether trees of robobt's own code have changed the frame."""
-
 _MAY_READ = "a skill may only read the frame, and acts through self.store.command"
 
 WorldFactory = Callable[[Scenario], World]
@@ -255,12 +252,10 @@ class MatchLoop(Closing):
         """Tick every tree once on this frame and return each robot's command, without changing the world.
 
         A robot that is not seen is not ticked and stands still. What a tree with users' code may have changed
-        is looked at, and restored, when it has been ticked; what trees of robobt's own code have changed is
-        looked at once in many ticks.
+        is looked at, and restored, when it has been ticked; robobt's own code changes nothing.
         """
         commands: dict[RobotId, RobotCommand] = {}
         process = None if self._only_own_code else OwnProcess()
-        watched = process is not None or self.measures.ticks % _CHECKED_EVERY == 0
         halted = frame.game.halted
         # Make both views before any tree is ticked, because they may share the frame's objects.
         views = [(team, shared_view(frame, team)) for team, lineup in self._lineups.items() if lineup.players]
@@ -268,7 +263,7 @@ class MatchLoop(Closing):
             lineup, kept = self._lineups[team], self._kept[team]
             # Trees do not see a robot that has left the field, but it is still driven.
             view = without_absent(everybody, everybody.game)
-            if watched:
+            if process is not None:
                 kept.take(view)
             leaving = lineup.follow(everybody)
             if process is not None:
@@ -295,7 +290,7 @@ class MatchLoop(Closing):
                     self._note_failure(player)
                     command = RobotCommand()
                 commands[player.robot] = command
-            if watched:
+            if process is not None:
                 self._mend(kept, team)
         if halted:
             # Robots stop whatever their trees say, because not every play checks the referee.

@@ -76,7 +76,7 @@ class KeptView:
             now.clear()
             now.update(before)
         self._made.clear()
-        _restore(self._view, "", ("_made",), (self._made,))
+        _restore(self._view, "", ("made",), (self._made,))
         return changed
 
     def _read(self) -> tuple[Any, ...]:

@@ -233,14 +233,11 @@ def has_ball(robot: RobotState, ball: BallState, sector: float = MOUTH_SECTOR) -
     """
     if robot.ball_contact:
         return True
-    dx, dy = ball.x - robot.x, ball.y - robot.y
-    if (
-        dx > _HOLDING_REACH
-        or dx < -_HOLDING_REACH
-        or dy > _HOLDING_REACH
-        or dy < -_HOLDING_REACH
-        or ball.z > RECEIVED_HEIGHT
-    ):
+    dx = ball.x - robot.x
+    if dx > _HOLDING_REACH or dx < -_HOLDING_REACH:
+        return False
+    dy = ball.y - robot.y
+    if dy > _HOLDING_REACH or dy < -_HOLDING_REACH or ball.z > RECEIVED_HEIGHT:
         return False
     return before_mouth(dx, dy, robot.heading, sector)
 
@@ -285,7 +282,8 @@ def _owner(frame: Frame) -> RobotId | None:
     for team, robots in ((frame.team, frame.own), (frame.team.other, frame.opponents)):
         for robot in robots:
             # Most robots are far from it, as the first number says.
-            if (abs(x - robot.x) <= _HOLDING_REACH or robot.ball_contact) and has_ball(robot, ball):
+            close = -_HOLDING_REACH <= x - robot.x <= _HOLDING_REACH
+            if (close or robot.ball_contact) and has_ball(robot, ball):
                 gap = hypot(x - robot.x, y - robot.y)
                 if gap < nearest:
                     best, nearest = RobotId(team, robot.id), gap

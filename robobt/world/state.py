@@ -118,19 +118,17 @@ class BallState:
 
 
 class Derived:
-    """A value derived from a frame, computed once and cached with it."""
+    """An object that keeps what has been derived from it.
 
-    __slots__ = ("_made",)
-    _made: dict[str, Any]
+    Attributes:
+        made: that, by name; clear it after changing the object.
+    """
 
-    @property
-    def made(self) -> dict[str, Any]:
-        """The cached values; clear them after changing the frame."""
-        try:
-            return self._made
-        except AttributeError:
-            self._made = {}
-            return self._made
+    __slots__ = ("made",)
+    made: dict[str, Any]
+
+    def __post_init__(self) -> None:
+        self.made = {}
 
 
 @dataclass(slots=True)

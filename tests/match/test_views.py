@@ -108,6 +108,6 @@ def test_what_was_worked_out_of_a_view_is_forgotten_when_it_is_replaced(made: ob
     view = _shared_view()
     kept = kept_view(view)
     movers_of(view)
-    view._made = made  # type: ignore[assignment]
+    _set(view, "made", made)
     assert kept.mend() is not None
     assert len(movers_of(view)) == 3

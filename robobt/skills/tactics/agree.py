@@ -119,16 +119,17 @@ def _attacker(frame: Frame, team: TeamStore, plan: TeamPlan) -> int | None:
     spot = game.placement if not game.in_play and game.placement is not None and not placing else None
     meant = team.receiver if pass_under_way(frame, team) else None
     candidates: list[float] = []
+    players, kicker, times = plan.players, team.kicker, plan.own_times
     rows = {robot.id: row for row, robot in enumerate(frame.own)}
     for robot in frame.own:
-        if robot.id not in plan.players or robot.id == team.kicker:
+        if robot.id not in players or robot.id == kicker:
             candidates += _NO_CANDIDATE
         elif spot is not None:
             # No robot has the ball yet or is beyond it.
             time = distance(spot, robot.position) / 2.0
             candidates += (time, ball.x, False)
         else:
-            candidates += (plan.own_times[robot.id], robot.x, has_ball(robot, ball))
+            candidates += (times[robot.id], robot.x, has_ball(robot, ball))
     row = choose_attacker(
         np.array(candidates, dtype=np.float64).reshape(-1, len(AttackerCandidate._fields)),
         ball.x,

@@ -45,28 +45,29 @@ class TakePlace(Skill):
 
     def on_running(self) -> Status:
         """Drive to the place for one tick."""
-        frame = self.frame
-        plan = agree(frame, self.store.team)
-        place = plan.places.get(self.me.id)
+        store = self.store
+        frame, me, team = store.frame, store.me, store.team
+        plan = agree(frame, team)
+        place = plan.places.get(me.id)
         if place is None:
             return self.fail("no place")
         if self._learned is not None:
             try:
                 command = self._learned.command(
-                    frame, self.me, place, self.drive_limits, self.draw, avoid_ball=True
+                    frame, me, place, self.drive_limits, self.draw, avoid_ball=True
                 )
             except PolicyError as error:
-                self.store.command = RobotCommand()
+                store.command = RobotCommand()
                 return self.fail(str(error))
             if command is not None:
-                self.store.command = command
+                store.command = command
                 return self.run("to its place as learned")
-        draw = self.draw
+        draw = store.draw
         # Only a robot that plans its way alone draws it.
-        way = None if draw.wants(PATHS) else way_to_place(frame, self.store.team, self.me.id)
+        way = None if draw.wants(PATHS) else way_to_place(frame, team, me.id)
         if way is not None:
             draw.point(TARGETS, place)
-            self.store.command = way
+            store.command = way
         else:
             slack = plan.tactics.facing
             self.drive_to(
