@@ -8,11 +8,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from math import cos, hypot, sin, sqrt
+from typing import NamedTuple
 
 from robobt.world.command import RobotCommand
 from robobt.world.compiled import compiled, compiled_merged
 from robobt.world.geometry import FloatArray, Point
-from robobt.world.records import ROBOT, Mover, Robot, mover_records, movers_of, robot_of
+from robobt.world.records import Mover, Robot, mover_records, movers_of
 from robobt.world.state import ROBOT_RADIUS, Frame, RobotState
 
 _OPPONENT_CLOSING_SPEED = 1.0
@@ -49,19 +50,30 @@ def avoid_crash(frame: Frame, me: RobotState, order: RobotCommand) -> RobotComma
         order: the command; changed in place.
     """
     if frame.game.in_play and (order.vx != 0.0 or order.vy != 0.0):
+        pose = float(me.x), float(me.y), float(me.heading)
         velocity = float(order.vx), float(order.vy)
-        theirs = movers_of(frame)[len(frame.own) :]
-        order.vx, order.vy = _slowed(robot_of(me), velocity, theirs, BRAKES * me.limits.braking)
+        theirs: FloatArray | None = frame.made.get("their movers")
+        if theirs is None:
+            theirs = frame.made["their movers"] = movers_of(frame)[len(frame.own) :]
+        order.vx, order.vy = _slowed(pose, velocity, theirs, BRAKES * me.limits.braking)
     return order
 
 
+class _Pose(NamedTuple):
+    """Place [m] and heading [rad]: plain numbers reach compiled code sooner than an array of them."""
+
+    x: float
+    y: float
+    heading: float
+
+
 @compiled
-def _slowed(me_: FloatArray, velocity: Point, others_: FloatArray, braking: float) -> Point:
-    return slowed_in_play(me_.view(ROBOT)[0], velocity, mover_records(others_), braking)
+def _slowed(pose: tuple[float, float, float], velocity: Point, others_: FloatArray, braking: float) -> Point:
+    return slowed_in_play(_Pose(*pose), velocity, mover_records(others_), braking)
 
 
 @compiled_merged
-def slowed_in_play(me: Robot, velocity: Point, others: Sequence[Mover], braking: float) -> Point:
+def slowed_in_play(me: Robot | _Pose, velocity: Point, others: Sequence[Mover], braking: float) -> Point:
     """Return the velocity ahead and to the left, slowed down towards opponents that it would crash into.
 
     Args:
@@ -123,7 +135,7 @@ def slowed_towards(me: Robot, velocity: Point, others: Sequence[Mover], skip: in
 
 
 @compiled_merged
-def _meeting(me: Robot, vx: float, vy: float, other: Mover) -> tuple[float, float, float]:
+def _meeting(me: Robot | _Pose, vx: float, vy: float, other: Mover) -> tuple[float, float, float]:
     """Return the gap to a robot that would be hit and the direction to it; -1 where it passes by."""
     dx, dy = other.x - me.x, other.y - me.y
     centres = hypot(dx, dy)
