@@ -75,6 +75,10 @@ class Search:
     ] = None
 
 
+_WORTH = 0.005
+"""Least change of expected goals for which a scan lists a moment: less is shown as +0.00."""
+
+
 def _only_with(wanted: str, lacking: bool, given: Mapping[str, object]) -> None:
     """Refuse those of the options that are given where the one that they go with is lacking."""
     wrong = [name for name, value in given.items() if value]
@@ -118,7 +122,8 @@ def what_if(
     Keys of --json: log, team, seconds, seed; with --at: at, decisions, each with name, trials, expected,
     goals, gain and goals_gain (mean, low, high: 95 %; null for "nothing changed"), followed (seconds in the
     log); really (expected and goals in the log), and record (the file, or null); with --scan: moments, each
-    with time, robot, decision, replay, and unchanged and changed as decisions.
+    with time, robot, decision, replay, and unchanged and changed as decisions, and left_out, the number of
+    moments that are worth too little to be listed.
 
     Exit code 3 when a robot's tree failed in a branch.
     """
@@ -168,6 +173,7 @@ def _at(
     from robobt.what_if import compare_decisions
     from robobt.what_if.compare import compared
     from robobt.what_if.decisions import decisions_of
+    from robobt.what_if.scan import nobody_decides
     from robobt.world.game import Team
 
     tick = logged.tick(at)
@@ -177,7 +183,9 @@ def _at(
     holder = branches.holder()
     ours = _team(team, changed, holder and holder.team)
     decisions = []
-    if not changed and holder is not None and holder.team is ours:
+    if not changed:
+        if holder is None or holder.team is not ours:
+            raise nobody_decides(logged, at, None if holder is None and team is None else ours)
         decisions = decisions_of(logged.recording.frame(tick), holder)
     # In a league log nobody knows what the teams play, so "nothing changed" follows the log.
     others = [side for side in Team if side not in (changed or [ours])]
@@ -225,11 +233,6 @@ def _at(
         return failure
     if decisions:
         say(f"{holder} has the ball and decides otherwise.")
-    elif not changed:
-        say(
-            f"No field player of {ours.value} has the ball at {at:g} s, so no other decision is tried; "
-            "--blue or --yellow lets a team play otherwise."
-        )
     say(
         f"{file} at {at:g} s: {ours.value}'s goals in the next {how.seconds:g} s, minus the opponents', "
         f"{trials} branches each"
@@ -274,6 +277,9 @@ def _scan(
             end=search.end,
             on_branch=progress.reach,
         )
+    listed = len(found)
+    found = [one for one in found if one.changed.gain is not None and one.changed.gain.mean >= _WORTH]
+    left_out = listed - len(found)
     replays = [_replay(branches, logged, one, ours, how.seed, search.out) for one in found]
     if as_json:
         moments = [
@@ -288,14 +294,19 @@ def _scan(
             for one, replay in zip(found, replays, strict=True)
         ]
         said = {"log": str(file), "team": ours.value, "seconds": how.seconds, "seed": how.seed}
-        print_json({**said, "moments": moments})
+        print_json({**said, "moments": moments, "left_out": left_out})
+        return branches.first_error
+    if not listed:
+        say(f"{file}: no field player of {ours.value} has the ball in play.")
         return branches.first_error
     if not found:
-        say(f"{file}: no field player of {ours.value} has the ball in play.")
+        say(f"{file}: no other decision of {ours.value} would have been worth {_WORTH:g} expected goals.")
         return branches.first_error
     say(f"{file}: moments at which another decision of {ours.value} would have been worth most")
     print_moments(found)
     say(f"Figures from {trials} branches each that the search has not seen.")
+    if left_out:
+        say(f"Left out: {left_out} of {listed}, where no other decision was worth {_WORTH:g} expected goals.")
     if search.out is not None:
         say(f"Replays, with the log drawn beside them: {search.out}")
     return branches.first_error

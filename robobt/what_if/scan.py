@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass, field
+from math import floor
 from statistics import fmean
 
 from robobt.what_if.branches import Branch, Branches
 from robobt.what_if.compare import UNCHANGED, DecisionFigures, compared
 from robobt.what_if.decisions import BallDecision, decisions_of
-from robobt.what_if.logged import LoggedMatch, playable
+from robobt.what_if.logged import LoggedMatch, WhatIfError, playable
 from robobt.world.game import Team
 from robobt.world.rules import owner
 from robobt.world.state import RobotId
@@ -90,6 +91,28 @@ def moments_of(
             found.append((tick, holder))
             last, until = holder, time + every - 1e-6
     return found
+
+
+def nobody_decides(logged: LoggedMatch, at: float, team: Team | None) -> WhatIfError:
+    """Return the error that no robot has the ball to decide about, which says who has it next.
+
+    Args:
+        logged: the match.
+        at: when nobody has it [s].
+        team: the team whose robots count; None for both.
+    """
+    who = "nobody" if team is None else f"no robot of {team.value}"
+    teams = list(Team) if team is None else [team]
+    later = [moment for one in teams for moment in moments_of(logged, one, 1e6, at)[:1]]
+    then = ""
+    if later:
+        tick, robot = min(later, key=lambda moment: moment[0])
+        # Rounded down, to the first tick after which is this one.
+        then = f"{robot} has it at {floor(100.0 * logged.recording.times[tick]) / 100.0:.2f} s; "
+    return WhatIfError(
+        f"{logged.recording.path}: {who} has the ball at {at:g} s, so no other decision can be tried; "
+        f"{then}--scan looks for moments that count, --blue or --yellow lets a team play otherwise"
+    )
 
 
 def scan(

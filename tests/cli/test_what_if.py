@@ -12,9 +12,11 @@ from typer.testing import CliRunner, Result
 
 from robobt.cli import app
 from robobt.live.replay_html import is_replay
-from robobt.what_if import Branch, Branches, load_logged
+from robobt.what_if import BallDecision, Branch, Branches, DecisionFigures, Found, load_logged
+from robobt.what_if.compare import MeanEstimate
 from robobt.what_if.scan import moments_of
-from robobt.world import Team
+from robobt.world import RobotId, Team
+from robobt.world.rules import owner
 from tests.what_if.made import recorded
 
 pytestmark = pytest.mark.integration
@@ -94,9 +96,23 @@ def test_who_decides_is_told_and_whose_branch_is_recorded(small: Path, time: flo
     shown = " ".join(invoke(*options, "--record", page).output.split())
     assert re.search(r"blue \d has the ball and decides otherwise", shown)
     assert re.search(r"Replay of '(shoot|pass to \d|carry|clear)', with the log", shown)
-    other = " ".join(invoke(*options, "--team", "yellow").output.split())
-    assert "No field player of yellow has the ball" in other
-    assert "shoot" not in other
+
+
+def test_a_moment_at_which_nobody_decides_is_refused_and_the_next_is_named(small: Path, time: float) -> None:
+    logged = load_logged(small)
+    ticks = range(len(logged.recording))
+    loose = next(tick for tick in ticks if owner(logged.recording.frame(tick)) is None)
+    at = float(logged.recording.times[loose])
+    nobody, yellow = invoke(small, "--at", at), invoke(small, "--at", time, "--team", "yellow")
+    assert (nobody.exit_code, yellow.exit_code) == (1, 1)
+    assert f"nobody has the ball at {at:g} s, so no other decision can be tried; " in nobody.output
+    assert f"no robot of yellow has the ball at {time:g} s" in yellow.output
+    assert "--scan looks for moments" in nobody.output
+    found = re.search(r"((blue|yellow) \d) has it at (\d+\.\d\d) s", nobody.output)
+    assert found is not None
+    assert owner(logged.recording.frame(logged.tick(float(found[3])))) == RobotId(
+        Team(found[2]), int(found[1][-1])
+    )
 
 
 def test_a_match_is_searched_and_each_moment_has_a_replay(small: Path) -> None:
@@ -110,6 +126,31 @@ def test_a_match_is_searched_and_each_moment_has_a_replay(small: Path) -> None:
         assert is_replay(Path(one["replay"]))
         assert one["changed"]["trials"] == 2
         assert one["robot"].startswith("blue ")
+
+
+def test_moments_that_are_worth_nothing_are_left_out_and_counted(
+    small: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def figures(name: str, gain: float | None) -> DecisionFigures:
+        worth = MeanEstimate(gain or 0.0, (gain or 0.0) - 0.1, (gain or 0.0) + 0.1)
+        return DecisionFigures(name, 9, worth, worth, None if gain is None else worth, worth, 1.0)
+
+    def found(*gains: float) -> list[Found]:
+        decision = BallDecision(RobotId(Team.BLUE, 2), "carry")
+        unchanged = figures("nothing changed", None)
+        return [
+            Found(1.0 + i, 60, decision, unchanged, figures("carry", it), 0) for i, it in enumerate(gains)
+        ]
+
+    monkeypatch.setattr("robobt.what_if.scan", lambda *_args, **_given: found(0.2, 0.004, -0.1))
+    shown = invoke(small, "--scan").output
+    assert "Left out: 2 of 3, where" in shown
+    assert "+0.20" in shown
+    assert shown.count("carry") == 1
+    said = json.loads(invoke(small, "--scan", "--json").stdout)
+    assert ([one["time"] for one in said["moments"]], said["left_out"]) == ([1.0], 2)
+    monkeypatch.setattr("robobt.what_if.scan", lambda *_args, **_given: found(0.004))
+    assert "no other decision of blue would have been worth 0.005" in invoke(small, "--scan").output
 
 
 @pytest.mark.parametrize(
