@@ -6,6 +6,7 @@ import tempfile
 import time
 from collections.abc import Callable, Iterable
 from pathlib import Path
+from statistics import fmean
 from typing import Annotated, Any
 
 import numpy as np
@@ -36,6 +37,12 @@ GOOD_CHANCE, EARLIEST = 0.1, 20.0
 HELD = 0.2
 """Time for which the robot has had the ball before its mistake [s]."""
 
+COST, COST_TRIALS, COST_TRIALS_AGAIN = 0.2, 12, 24
+"""Expected goals that a mistake costs at least, and in how many pairs of branches, first and once more."""
+
+OTHER_BRANCHES = 1_000_000
+"""Added to the seed of a scan's branches for those from which the cost of a mistake comes."""
+
 SEARCHED = 45.0
 """Length of the matches in which a good chance is looked for [s]."""
 
@@ -63,7 +70,8 @@ def what_if(
     how fast the last match itself was played and recorded. coverage: in how many moments what really followed
     lies inside the 90 % interval of branches in which nothing changed, for the ball's place at the end and
     for expected goals. mistakes: matches in which a robot with a good chance gives the ball to an opponent;
-    place: the mistake's place in the list of the scan, 0 if it is not there; cpu_s: of the scan.
+    cost: expected goals that this costs, from branches of the match without the mistake; place: the mistake's
+    place in the list of the scan, 0 if it is not there; cpu_s: of the scan.
     """
     found: dict[str, Any] = {}
     with tempfile.TemporaryDirectory() as folder:
@@ -174,10 +182,11 @@ def measure_coverage(matches: Iterable[LoggedMatch], moments: int, seed: int) ->
     }
 
 
-def good_chance(logged: LoggedMatch) -> tuple[float, RobotId] | None:
-    """Return the first time at which a blue field player has a good chance, and that robot."""
+def good_chances(logged: LoggedMatch) -> list[tuple[float, RobotId]]:
+    """Return when blue field players come to a good chance, once each time one has the ball, and who."""
     rater = ExpectedGoal(goalkeeper="fitted")
     since: tuple[float, RobotId] | None = None
+    found: list[tuple[float, RobotId]] = []
     for tick in range(len(logged.recording)):
         frame = logged.recording.frame(tick)
         holder = owner(frame) if frame.game.in_play else None
@@ -190,7 +199,41 @@ def good_chance(logged: LoggedMatch) -> tuple[float, RobotId] | None:
             and frame.time - since[0] >= HELD
             and standing(frame, rater, Team.BLUE) >= GOOD_CHANCE
         ):
-            return frame.time, holder
+            found.append((frame.time, holder))
+            # Once only, until somebody else has the ball or nobody.
+            since = float("inf"), holder
+    return found
+
+
+def mistaken(scenario: Scenario, robot: RobotId, at: float) -> Scenario:
+    """Return the scenario in which a robot makes its mistake at a time [s]."""
+    return changed(scenario, {f"{robot}.play": f"{PLANTED}:mistaken_player", f"{robot}.at": at})
+
+
+def costly_mistake(logged: LoggedMatch, seed: int) -> tuple[float, RobotId, float] | None:
+    """Return the first time at which a mistake really costs something, the robot, and what it costs.
+
+    What a mistake costs is the mean difference of pairs of branches of the match without it, in which the
+    robot plays on or makes the mistake [expected goals]. What is returned comes from fresh branches.
+    """
+    for at, robot in good_chances(logged):
+        right, wrong = Branches(logged), Branches(logged, mistaken(logged.scenario, robot, at))
+        for played in (right, wrong):
+            played.begin(logged.tick(at))
+
+        def lost(trials: range, right: Branches = right, wrong: Branches = wrong) -> float:
+            pairs = [
+                [one.play(seed, trial, follow=[Team.YELLOW]) for one in (right, wrong)] for trial in trials
+            ]
+            return fmean(one.value(Team.BLUE) - other.value(Team.BLUE) for one, other in pairs)
+
+        cost = lost(range(COST_TRIALS))
+        if cost >= COST:
+            cost = lost(range(COST_TRIALS, COST_TRIALS + COST_TRIALS_AGAIN))
+        right.close()
+        wrong.close()
+        if cost >= COST:
+            return at, robot, cost
     return None
 
 
@@ -202,29 +245,31 @@ def find_mistakes(
     Args:
         folder: for recordings.
         count: how many matches.
-        seed: seed of the first match that is tried; those without a good chance in :data:`SEARCHED` are left
-            out.
+        seed: seed of the first match that is tried; those without a mistake that costs something in
+            :data:`SEARCHED` are left out.
         tell: takes a line about each match.
     """
     found: list[dict[str, object]] = []
     while len(found) < count:
         seed += 1
-        chance = good_chance(recorded(folder, six_a_side(SEARCHED), seed))
-        if chance is None:
+        mistake = costly_mistake(recorded(folder, six_a_side(SEARCHED), seed), OTHER_BRANCHES + seed)
+        if mistake is None:
             continue
-        at, robot = chance
-        play = {f"{robot}.play": f"{PLANTED}:mistaken_player", f"{robot}.at": at}
-        logged = recorded(folder, changed(six_a_side(at + 6.0), play), seed)
+        at, robot, cost = mistake
+        logged = recorded(folder, mistaken(six_a_side(at + 6.0), robot, at), seed)
         began = time.process_time()
         played = Branches(logged)
-        moments = scan(logged, Team.BLUE, played, every=1.0, count=5, trials=24, first=3, seed=seed)
+        moments = scan(logged, Team.BLUE, played, every=1.0, count=5, trials=16, first=2, seed=seed)
         played.close()
         taken = time.process_time() - began
         near = [abs(one.time - at) <= FOUND_WITHIN for one in moments]
         place = near.index(True) + 1 if any(near) else 0
         tell(
-            f"seed {seed}: {robot} at {at:.2f} s, place {place} of {len(moments)}, {taken:.0f} CPU s: "
+            f"seed {seed}: {robot} at {at:.2f} s costs {cost:.2f}, place {place} of {len(moments)}, "
+            f"{taken:.0f} CPU s: "
             + "; ".join(f"{one.time:.2f} s {one.decision.name} {one.gain:+.2f}" for one in moments)
         )
-        found.append({"seed": seed, "at": at, "robot": str(robot), "place": place, "cpu_s": taken})
+        found.append(
+            {"seed": seed, "at": at, "robot": str(robot), "cost": cost, "place": place, "cpu_s": taken}
+        )
     return found

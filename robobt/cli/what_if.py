@@ -122,8 +122,8 @@ def what_if(
     Keys of --json: log, team, seconds, seed; with --at: at, decisions, each with name, trials, expected,
     goals, gain and goals_gain (mean, low, high: 95 %; null for "nothing changed"), followed (seconds in the
     log); really (expected and goals in the log), and record (the file, or null); with --scan: moments, each
-    with time, robot, decision, replay, and unchanged and changed as decisions, and left_out, the number of
-    moments that are worth too little to be listed.
+    with time, robot, decision, replay, and unchanged and changed as decisions, and searched, the number of
+    moments that were searched.
 
     Exit code 3 when a robot's tree failed in a branch.
     """
@@ -255,6 +255,7 @@ def _scan(
     as_json: bool,
 ) -> str | None:
     from robobt.what_if import scan
+    from robobt.what_if.scan import moments_of
     from robobt.world.game import Team
 
     ours = _team(team, [], Team.BLUE)
@@ -277,9 +278,8 @@ def _scan(
             end=search.end,
             on_branch=progress.reach,
         )
-    listed = len(found)
+    searched = len(moments_of(logged, ours, search.every, search.begin, search.end))
     found = [one for one in found if one.changed.gain is not None and one.changed.gain.mean >= _WORTH]
-    left_out = listed - len(found)
     replays = [_replay(branches, logged, one, ours, how.seed, search.out) for one in found]
     if as_json:
         moments = [
@@ -294,19 +294,22 @@ def _scan(
             for one, replay in zip(found, replays, strict=True)
         ]
         said = {"log": str(file), "team": ours.value, "seconds": how.seconds, "seed": how.seed}
-        print_json({**said, "moments": moments, "left_out": left_out})
+        print_json({**said, "moments": moments, "searched": searched})
         return branches.first_error
-    if not listed:
+    if not searched:
         say(f"{file}: no field player of {ours.value} has the ball in play.")
         return branches.first_error
     if not found:
-        say(f"{file}: no other decision of {ours.value} would have been worth {_WORTH:g} expected goals.")
+        say(f"{file}: {searched} moments searched; no other decision was worth {_WORTH:g} expected goals.")
         return branches.first_error
     say(f"{file}: moments at which another decision of {ours.value} would have been worth most")
     print_moments(found)
     say(f"Figures from {trials} branches each that the search has not seen.")
-    if left_out:
-        say(f"Left out: {left_out} of {listed}, where no other decision was worth {_WORTH:g} expected goals.")
+    if len(found) < search.moments:
+        say(
+            f"{searched - len(found)} of {searched} moments left out: "
+            f"worth less than {_WORTH:g} expected goals, or within a second of one in the list."
+        )
     if search.out is not None:
         say(f"Replays, with the log drawn beside them: {search.out}")
     return branches.first_error

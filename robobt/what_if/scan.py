@@ -18,6 +18,9 @@ from robobt.world.state import RobotId
 _KEPT = 4
 """Each round of the search keeps one in this many decisions, and plays twice as many branches of them."""
 
+_OF_A_MOMENT = 2
+"""No more decisions of one moment are kept after the first round."""
+
 _FIRST_FRESH = 1_000_000
 """Number of the first branch of the final figures; the search has smaller ones."""
 
@@ -66,7 +69,8 @@ def moments_of(
 ) -> list[tuple[int, RobotId]]:
     """Return the ticks at which a robot of ``team`` has the ball in play, and that robot.
 
-    A moment is where a robot gets the ball, and from there every ``every`` seconds while it keeps the ball.
+    A moment is where a robot gets the ball, and from there every ``every`` seconds while it keeps the ball. A
+    robot that loses the ball and gets it again within that time has one moment.
 
     Args:
         logged: the match.
@@ -76,7 +80,7 @@ def moments_of(
         end: no moments after this time [s]; None for the whole match.
     """
     found: list[tuple[int, RobotId]] = []
-    times, last, until = logged.recording.times, None, -1.0
+    times, until = logged.recording.times, dict[RobotId, float]()
     for tick in range(len(logged.recording)):
         time = float(times[tick])
         if time < begin or (end is not None and time > end):
@@ -84,12 +88,10 @@ def moments_of(
         frame = logged.recording.frame(tick)
         holder = owner(frame) if frame.game.in_play and playable(frame.game) else None
         if holder is None or holder.team is not team or holder.number == _keeper(logged, team):
-            if holder is not None or not frame.game.in_play:
-                last = None
             continue
-        if holder != last or time >= until:
+        if time >= until.get(holder, time):
             found.append((tick, holder))
-            last, until = holder, time + every - 1e-6
+            until[holder] = time + every - 1e-6
     return found
 
 
@@ -132,10 +134,10 @@ def scan(
 ) -> list[Found]:
     """Return the moments at which another decision of ``team`` would have been worth most, the best first.
 
-    Every decision at every moment is played in a few branches. The best quarter gets twice as many, and so on
-    (successive halving). The figures of those that are left come from fresh branches, because the best of
-    many has also been lucky; those of the first come from fresh ones once more, because the first of a few
-    has been, too.
+    Every decision at every moment is played in a few branches, except those that change nothing, such as a
+    shot without a free way. The best quarter gets twice as many, and so on (successive halving). The figures
+    of the best, where they gained anything, come from fresh branches, because the best of many has also been
+    lucky; those of the first come from fresh ones once more, because the first of a few has been, too.
 
     Args:
         logged: the match.
@@ -162,7 +164,7 @@ def scan(
         for decision in decisions_of(logged.recording.frame(tick), robot)
     ]
     done = 0
-    rounds = _rounds(len(arms), first, 4 * count)
+    rounds = _rounds(len(arms), first, 2 * count)
     planned = sum(size * number for size, number in rounds)
     next_trial = 0
 
@@ -172,15 +174,17 @@ def scan(
         on_branch(done, max(planned, done))
 
     for size, number in rounds:
-        arms = sorted(arms, key=lambda arm: -arm.gain)[:size] if next_trial else arms
+        arms = _best(arms, size, _OF_A_MOMENT) if next_trial else arms
         numbers = range(next_trial, next_trial + number)
-        _play_round(branches, arms, team, seed, numbers, follow, tell)
+        arms = _play_round(branches, arms, team, seed, numbers, follow, tell)
         next_trial += number
     chosen: list[_Arm] = []
-    for arm in sorted(arms, key=lambda arm: -arm.gain):
+    for arm in _best(arms, len(arms), 1):
         time = logged.recording.times[arm.tick]
-        if len(chosen) < count and all(
-            abs(logged.recording.times[one.tick] - time) >= apart for one in chosen
+        if (
+            len(chosen) < count
+            and arm.gain > 0.0
+            and all(abs(logged.recording.times[one.tick] - time) >= apart for one in chosen)
         ):
             chosen.append(arm)
     fresh = range(_FIRST_FRESH, _FIRST_FRESH + trials)
@@ -201,6 +205,17 @@ def _rounds(arms: int, first: int, enough: int) -> list[tuple[int, int]]:
     return rounds
 
 
+def _best(arms: Sequence[_Arm], size: int, of_a_moment: int) -> list[_Arm]:
+    """Return the decisions that gained most, no more than ``of_a_moment`` of each moment."""
+    chosen: list[_Arm] = []
+    ticks: list[int] = []
+    for arm in sorted(arms, key=lambda arm: -arm.gain):
+        if len(chosen) < size and ticks.count(arm.tick) < of_a_moment:
+            chosen.append(arm)
+            ticks.append(arm.tick)
+    return chosen
+
+
 def _play_round(
     branches: Branches,
     arms: Sequence[_Arm],
@@ -209,18 +224,25 @@ def _play_round(
     numbers: range,
     follow: Collection[Team],
     tell: Callable[[], None],
-) -> None:
+) -> list[_Arm]:
+    """Play branches of decisions, and return those whose first branch was another one."""
     by_tick: dict[int, list[_Arm]] = {}
     for arm in arms:
         by_tick.setdefault(arm.tick, []).append(arm)
+    carried_out: list[_Arm] = []
     for tick, here in sorted(by_tick.items()):
         branches.begin(tick)
-        unchanged = [branches.play(seed, number, follow=follow).value(team) for number in numbers]
+        unchanged = [branches.play(seed, number, follow=follow) for number in numbers]
         for arm in here:
             for number, before in zip(numbers, unchanged, strict=True):
                 branch = branches.play(seed, number, follow=follow, decision=arm.decision)
-                arm.gains.append(branch.value(team) - before)
                 tell()
+                if branch == before and not arm.gains:
+                    break
+                arm.gains.append(branch.value(team) - before.value(team))
+            else:
+                carried_out.append(arm)
+    return carried_out
 
 
 def _figures(

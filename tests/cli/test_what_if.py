@@ -144,13 +144,15 @@ def test_moments_that_are_worth_nothing_are_left_out_and_counted(
 
     monkeypatch.setattr("robobt.what_if.scan", lambda *_args, **_given: found(0.2, 0.004, -0.1))
     shown = invoke(small, "--scan").output
-    assert "Left out: 2 of 3, where" in shown
+    searched = len(moments_of(load_logged(small), Team.BLUE, 0.5))
+    assert f"{searched - 1} of {searched} moments left out: worth less than 0.005 expected goals" in shown
     assert "+0.20" in shown
     assert shown.count("carry") == 1
     said = json.loads(invoke(small, "--scan", "--json").stdout)
-    assert ([one["time"] for one in said["moments"]], said["left_out"]) == ([1.0], 2)
+    assert ([one["time"] for one in said["moments"]], said["searched"]) == ([1.0], searched)
     monkeypatch.setattr("robobt.what_if.scan", lambda *_args, **_given: found(0.004))
-    assert "no other decision of blue would have been worth 0.005" in invoke(small, "--scan").output
+    none = invoke(small, "--scan").output
+    assert f"{searched} moments searched; no other decision was worth 0.005 expected goals" in none
 
 
 @pytest.mark.parametrize(

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections import Counter
+from itertools import pairwise
 from statistics import fmean
 from typing import Any
 
@@ -12,6 +14,7 @@ from robobt.what_if import Branch, Branches, LoggedMatch, decisions_of, scan
 from robobt.what_if.compare import MeanEstimate
 from robobt.what_if.scan import moments_of
 from robobt.world import Team
+from robobt.world.rules import owner
 
 pytestmark = pytest.mark.integration
 
@@ -53,6 +56,32 @@ def test_moments_are_where_a_field_player_gets_and_keeps_the_ball(logged: Logged
     assert all(robot.team is Team.BLUE and robot.number != 0 for _, robot in often)
     late = moments_of(logged, Team.BLUE, 0.1, begin=2.0, end=3.0)
     assert all(2.0 <= logged.recording.times[tick] <= 3.0 for tick, _ in late)
+
+
+def test_a_robot_that_gets_the_ball_again_soon_has_one_moment(logged: LoggedMatch) -> None:
+    holders = [owner(logged.recording.frame(tick)) for tick in range(len(logged.recording))]
+    changes = [now for before, now in pairwise(one for one in holders if one is not None) if before != now]
+    blue = [one for one in changes if one.team is Team.BLUE and one.number != 0]
+    moments = moments_of(logged, Team.BLUE, 60.0)
+    assert len(blue) > len(moments)
+    assert len({robot for _, robot in moments}) == len(moments)
+
+
+def test_a_decision_that_changes_nothing_is_tried_once(logged: LoggedMatch) -> None:
+    tries: Counter[str] = Counter()
+
+    class NoWay(Luck):
+        def play(self, seed: int, trial: int, **given: Any) -> Branch:
+            decision = given.pop("decision", None)
+            if decision is not None:
+                tries[decision.name] += 1
+                decision = None if decision.name == "shoot" else decision
+            return super().play(seed, trial, decision=decision, **given)
+
+    found = searched(NoWay(logged), 1)
+    assert tries["shoot"] == len(moments_of(logged, Team.BLUE, 0.2))
+    assert tries["carry"] >= 2 * tries["shoot"]
+    assert "shoot" not in {one.decision.name for one in found}
 
 
 def test_the_decisions_are_a_shot_passes_to_mates_carrying_and_a_clearance(logged: LoggedMatch) -> None:
