@@ -106,6 +106,7 @@ class Recording:
     outcome: dict[str, JsonValue] | None
     pictures: SeenPictures | None = None
     cameras: dict[int, tuple[float, float, float]] = field(default_factory=dict)
+    _slots: dict[RobotId, int] = field(default_factory=dict, init=False, repr=False, compare=False)
 
     @property
     def complete(self) -> bool:
@@ -179,9 +180,11 @@ class Recording:
 
     def slot(self, robot: RobotId) -> int:
         """Return the robot's place in the header and in the arrays."""
-        for slot, entry in enumerate(self.header.robots):
-            if entry.id == robot:
-                return slot
+        if not self._slots:
+            self._slots.update({entry.id: slot for slot, entry in enumerate(self.header.robots)})
+        slot = self._slots.get(robot)
+        if slot is not None:
+            return slot
         there = ", ".join(str(entry.id) for entry in self.header.robots)
         raise KeyError(f"robot {robot} is not in {self.path}; there are {there}")
 
