@@ -15,10 +15,7 @@ from robobt.world.game import Team
 from robobt.world.rules import owner
 from robobt.world.state import RobotId
 
-_KEPT = 4
-"""Each round of the search keeps one in this many decisions, and plays twice as many branches of them."""
-
-_OF_A_MOMENT = 2
+_OF_A_MOMENT = 3
 """No more decisions of one moment are kept after the first round."""
 
 _FIRST_FRESH = 1_000_000
@@ -135,8 +132,8 @@ def scan(
     """Return the moments at which another decision of ``team`` would have been worth most, the best first.
 
     Every decision at every moment is played in a few branches, except those that change nothing, such as a
-    shot without a free way. The best quarter gets twice as many, and so on (successive halving). The figures
-    of the best, where they gained anything, come from fresh branches, because the best of many has also been
+    shot without a free way. The best half gets as many again, and so on (successive halving). The figures of
+    the best, where they gained anything, come from fresh branches, because the best of many has also been
     lucky; those of the first come from fresh ones once more, because the first of a few has been, too.
 
     Args:
@@ -198,10 +195,11 @@ def scan(
 
 def _rounds(arms: int, first: int, enough: int) -> list[tuple[int, int]]:
     """Return for each round how many decisions are played, and in how many branches each."""
-    rounds, number = [(arms, first)], first
+    rounds, played = [(arms, first)], first
     while arms > enough:
-        arms, number = max(enough, arms // _KEPT), 2 * number
-        rounds.append((arms, number))
+        arms = max(enough, arms // 2)
+        rounds.append((arms, played))
+        played *= 2
     return rounds
 
 
