@@ -23,7 +23,7 @@ policy takes only the first part.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Literal
 
 import numpy as np
@@ -32,6 +32,7 @@ from torch import Tensor, nn
 from torch.nn.functional import softplus
 
 from robobt.learning.agents.learner import Learner
+from robobt.learning.agents.mixed_actions import MixedActions, Numbers
 from robobt.learning.agents.networks import Actor, body_of
 from robobt.learning.agents.optimiser import Adam
 from robobt.learning.agents.rollout import Floats, Rollout, advantages
@@ -40,8 +41,6 @@ from robobt.world.observation import Group
 
 PolicyUpdate = Literal["improve", "keep", "imitate"]
 """What an update does to the policy."""
-
-_LOG_ROOT = 0.5 * float(np.log(2.0 * np.pi))
 
 
 class Value(nn.Module):
@@ -98,7 +97,7 @@ class PPO(Learner):
         self.critic = Value([*scale, *state_scale], hidden, generator, groups)
         self._observed, self._in_ball_frame = len(scale), bool(vectors)
         self._continuous = torch.tensor(list(continuous))
-        self._normal, self._thresholds = _columns(continuous), _columns([not each for each in continuous])
+        self._actions = MixedActions(continuous)
         self._gamma = settings.gamma
         self._log_std = nn.Parameter(torch.full((sum(continuous),), float(np.log(settings.init_std))))
         # The initial policy prefers no direction and rarely kicks.
@@ -110,23 +109,27 @@ class PPO(Learner):
         self._critic_adam = Adam(list(self.critic.parameters()), settings.learning_rate, eps=1e-5)
 
     @torch.no_grad()
-    def act(self, observation: Floats, rng: np.random.Generator) -> tuple[Floats, Floats, Floats]:
-        """Draw actions: (n, observation and state) -> (n, action), log-probabilities (n,), values (n,)."""
-        seen = torch.from_numpy(observation.astype(np.float32))
-        output = self._policy_output(seen)
-        noise = torch.from_numpy(rng.standard_normal((len(seen), len(self._log_std)), np.float32))
-        uniform = torch.from_numpy(rng.random((len(seen), int((~self._continuous).sum())), np.float32))
-        action = torch.empty_like(output)
-        action[:, self._normal] = output[:, self._normal] + self._log_std.exp() * noise
-        kicks = uniform < torch.sigmoid(output[:, self._thresholds])
-        action[:, self._thresholds] = torch.where(kicks, 1.0, -1.0)
-        log_probability, _ = self._evaluate_actions(output, action)
-        return (_to_numpy(action), _to_numpy(log_probability), _to_numpy(self._values(seen)))
+    def act(self, observation: Floats, rng: np.random.Generator) -> Floats:
+        """Draw actions: (n, observation and state) -> (n, action)."""
+        output = self._policy_output(torch.from_numpy(observation.astype(np.float32)))
+        return self._actions.draw(_rows(output), self._spread, rng).T.astype(np.float64)
+
+    @torch.no_grad()
+    def log_probabilities(self, observation: Floats, action: Floats) -> Floats:
+        """Return the log-probability (n,) of actions (n, action) at (n, observation and state)."""
+        output = self._in_parts(self._policy_output, observation)
+        taken = action.T.astype(np.float32, order="C")
+        return self._actions.log_probability(_rows(output), taken, self._spread).astype(np.float64)
 
     @torch.no_grad()
     def values(self, observation: Floats) -> Floats:
         """Return V of (n, observation and state), (n,)."""
-        return _to_numpy(self._values(torch.from_numpy(observation.astype(np.float32))))
+        return np.asarray(self._in_parts(self._values, observation).numpy(), dtype=np.float64)
+
+    def _in_parts(self, network: Callable[[Tensor], Tensor], observation: Floats) -> Tensor:
+        """Call a network on rows in parts of a minibatch, whose layers fit in the processor's cache."""
+        rows = torch.from_numpy(observation.astype(np.float32))
+        return torch.cat([network(part) for part in torch.split(rows, self.settings.minibatch_size)])
 
     def anneal_gamma(self, share: float) -> None:
         """Set the discount for when ``share`` of the run's steps is over: the horizon grows linearly."""
@@ -152,20 +155,22 @@ class PPO(Learner):
         settings = self.settings
         advantage = advantages(rollout, self._gamma, settings.gae_lambda)
         target = advantage + rollout.value
-        columns = [rollout.observation, rollout.action, rollout.log_probability, advantage, target]
+        seen = torch.from_numpy(rollout.observation.reshape(target.size, -1).astype(np.float32))
+        columns = [rollout.action, rollout.log_probability, advantage, target]
         if imitation > 0.0 and rollout.shown is not None:
             columns.append(rollout.shown)
-        flat = [array.reshape(advantage.size, -1) for array in columns]
-        # In one table, so that a shuffle is one gather.
-        decisions = torch.from_numpy(np.concatenate(flat, axis=1, dtype=np.float32))
+        flat = [array.reshape(target.size, -1).T for array in columns]
+        decisions = np.concatenate(flat, dtype=np.float32)
+        edges, size = np.cumsum([len(part) for part in flat])[:-1], settings.minibatch_size
         for epoch in range(settings.num_epochs):
             last = epoch == settings.num_epochs - 1
-            shuffled = decisions.index_select(0, torch.from_numpy(rng.permutation(len(decisions))))
-            for rows in torch.split(shuffled, settings.minibatch_size):
-                observation, action, *rest = torch.split(rows, [array.shape[1] for array in flat], 1)
-                old, gain, aim = (column[:, 0] for column in rest[:3])
+            order = rng.permutation(target.size)
+            minibatches = torch.split(seen[torch.from_numpy(order)], size)
+            parts = np.split(decisions[:, order], range(size, target.size, size), axis=1)
+            for observation, part in zip(minibatches, parts, strict=True):
+                action, (old,), (gain,), (aim,), *shown = np.split(part, edges)
                 if policy == "improve":
-                    lesson = (rest[3], imitation) if len(rest) > 3 else None
+                    lesson = (shown[0], imitation) if shown else None
                     self._update_policy(observation, action, old, gain, last, lesson)
                 elif policy == "imitate":
                     self._imitate(observation, action, last)
@@ -176,50 +181,51 @@ class PPO(Learner):
             explained = 1.0 - (target - rollout.value).var() / spread
             self.diagnostics.add(explained_variance=torch.tensor(explained))
 
+    @np.errstate(over="ignore", invalid="ignore")
     def _update_policy(
         self,
         seen: Tensor,
-        action: Tensor,
-        old: Tensor,
-        advantage: Tensor,
+        action: Numbers,
+        old: Numbers,
+        advantage: Numbers,
         report: bool = False,
-        lesson: tuple[Tensor, float] | None = None,
+        lesson: tuple[Numbers, float] | None = None,
     ) -> None:
         """Take a step of (3), with a bonus for entropy; with ``report`` add to the diagnostics.
 
-        ``lesson`` is what a teacher shows, and the weight of imitating it.
+        Actions are (action, m). ``lesson`` is what a teacher shows, and the weight of imitating it.
         """
-        settings = self.settings
-        output = self._policy_output(seen)
-        log_probability, entropy = self._evaluate_actions(output, action)
-        advantage = (advantage - advantage.mean()) / (advantage.std() + 1e-8)
-        log_ratio = log_probability - old
-        ratio = log_ratio.exp()
-        clipped = ratio.clamp(1.0 - settings.clip_coef, 1.0 + settings.clip_coef)
-        gain = torch.minimum(ratio * advantage, clipped * advantage).mean()
-        mean_entropy = entropy.mean()
-        loss = -gain - settings.ent_coef * mean_entropy
+        settings, clip = self.settings, self.settings.clip_coef
+        policy = self._policy_output(seen)
+        output, spread = _rows(policy.detach()), self._spread
+        advantage = advantage - advantage.mean()
+        advantage /= np.sqrt(np.vdot(advantage, advantage) / max(len(advantage) - 1, 1)) + 1e-8
+        log_ratio = self._actions.log_probability(output, action, spread) - old
+        ratio = np.exp(log_ratio)
+        # (3) is flat where rho has left its range on the side to which A drives it.
+        free = np.where(advantage > 0.0, ratio < 1.0 + clip, ratio > 1.0 - clip)
+        weight = np.where(free, ratio * advantage / -len(ratio), 0.0)
+        slope, widening = self._actions.slopes(output, action, spread, weight, -settings.ent_coef)
+        losses, slopes = [policy], [torch.from_numpy(slope).t()]
         if lesson is not None:
-            shown, weight = lesson
-            missed, off = self._missed(output, shown)
-            loss = loss + weight * missed
+            missed, off = self._missed(policy, lesson[0])
+            losses, slopes = [policy, missed], [*slopes, torch.tensor(lesson[1])]
             if report:
                 self._report_imitation(missed, off)
-        weights = self._actor_adam.weights
-        norm = self._actor_adam.clipped_step(torch.autograd.grad(loss, weights), settings.max_grad_norm)
-        if not report:
-            return
-        with torch.no_grad():
-            change = ratio - 1.0
+        gradients = [*torch.autograd.grad(losses, list(self.actor.parameters()), slopes)]
+        gradients.append(torch.from_numpy(widening))
+        norm = self._actor_adam.clipped_step(gradients, settings.max_grad_norm)
+        if report:
+            gain = np.minimum(ratio * advantage, ratio.clip(1.0 - clip, 1.0 + clip) * advantage)
             self.diagnostics.add(
-                policy_loss=-gain.detach(),
-                entropy=mean_entropy.detach(),
-                approx_kl=(change - log_ratio).mean(),
-                clip_fraction=(change.abs() > settings.clip_coef).float().mean(),
+                policy_loss=torch.tensor(-gain.mean()),
+                entropy=torch.tensor(self._actions.entropy(output, spread).mean()),
+                approx_kl=torch.tensor((ratio - 1.0 - log_ratio).mean()),
+                clip_fraction=torch.tensor((abs(ratio - 1.0) > clip).mean(dtype=np.float32)),
                 policy_grad_norm=norm,
             )
 
-    def _imitate(self, seen: Tensor, shown: Tensor, report: bool = False) -> None:
+    def _imitate(self, seen: Tensor, shown: Numbers, report: bool = False) -> None:
         """Take a step towards the actions shown: of squared errors, and of cross entropy for thresholds."""
         loss, off = self._missed(self._policy_output(seen), shown)
         # The spread is not part of this loss.
@@ -229,26 +235,26 @@ class PPO(Learner):
         if report:
             self._report_imitation(loss, off)
 
-    def _missed(self, output: Tensor, shown: Tensor) -> tuple[Tensor, Tensor]:
+    def _missed(self, policy: Tensor, shown: Numbers) -> tuple[Tensor, Tensor]:
         """Return the loss of imitation, and its part of squared errors (m,), of outputs (m, action)."""
-        off = (output - shown)[:, self._normal].square().sum(-1)
-        odds = output[:, self._thresholds]
-        missed = softplus(-odds * shown[:, self._thresholds].sign()).sum(-1)
+        output, wanted = policy.t(), torch.from_numpy(shown)
+        off = (output - wanted)[self._actions.normal].square().sum(0)
+        thresholds = self._actions.thresholds
+        missed = softplus(-output[thresholds] * wanted[thresholds].sign()).sum(0)
         return (off + missed).mean(), off
 
     def _report_imitation(self, loss: Tensor, off: Tensor) -> None:
         self.diagnostics.add(imitation_loss=loss.detach(), imitation_error=off.detach().mean().sqrt())
 
-    def _update_value(self, seen: Tensor, target: Tensor, report: bool = False) -> None:
+    def _update_value(self, seen: Tensor, target: Numbers, report: bool = False) -> None:
         """Take a step of (4); with ``report`` add to the diagnostics."""
         value = self._values(seen)
-        loss = (value - target).square().mean()
-        weights = self._critic_adam.weights
-        gradients = torch.autograd.grad(0.5 * loss, weights)
+        error = value.detach() - torch.from_numpy(target)
+        gradients = torch.autograd.grad(value, self._critic_adam.weights, error / len(error))
         norm = self._critic_adam.clipped_step(gradients, self.settings.max_grad_norm)
         if report:
-            mean = value.detach().mean()
-            self.diagnostics.add(value_loss=loss.detach(), value_mean=mean, value_grad_norm=norm)
+            loss, mean = error.square().mean(), value.detach().mean()
+            self.diagnostics.add(value_loss=loss, value_mean=mean, value_grad_norm=norm)
 
     def _policy_output(self, seen: Tensor) -> Tensor:
         """Return the means of the normal entries and the log-odds of the others, (m, action)."""
@@ -264,17 +270,9 @@ class PPO(Learner):
         value: Tensor = self.critic(seen)
         return value
 
-    def _evaluate_actions(self, output: Tensor, action: Tensor) -> tuple[Tensor, Tensor]:
-        """Return log-probability and entropy, both (m,), of actions (m, action) under the policy's output."""
-        log_std = self._log_std
-        off = (action[:, self._normal] - output[:, self._normal]) * (-log_std).exp()
-        normal = -0.5 * off.square() - log_std - _LOG_ROOT
-        odds, kicks = output[:, self._thresholds], action[:, self._thresholds]
-        # log sigmoid(x) = -softplus(-x), and 1 - sigmoid(x) = sigmoid(-x).
-        thresholds = -softplus(-odds * kicks)
-        threshold_entropy = softplus(odds) - odds * torch.sigmoid(odds)
-        entropy = (log_std + 0.5 + _LOG_ROOT).sum() + threshold_entropy.sum(-1)
-        return normal.sum(-1) + thresholds.sum(-1), entropy
+    @property
+    def _spread(self) -> Numbers:
+        return self._log_std.detach().numpy()[:, None].copy()
 
     def _modules(self) -> tuple[tuple[str, nn.Module], ...]:
         return (
@@ -297,12 +295,6 @@ def orthogonal(body: nn.Module, last_gain: float, generator: torch.Generator) ->
     return layers[-1]
 
 
-def _columns(which: Sequence[bool]) -> slice | Tensor:
-    """Return where ``which`` is true, as a slice if that is one block, which costs no copy."""
-    places = [place for place, true in enumerate(which) if true]
-    first, end = (places[0], places[-1] + 1) if places else (0, 0)
-    return slice(first, end) if end - first == len(places) else torch.tensor(places)
-
-
-def _to_numpy(tensor: Tensor) -> Floats:
-    return np.asarray(tensor.numpy(), dtype=np.float64)
+def _rows(output: Tensor) -> Numbers:
+    """Return outputs (m, action) as (action, m)."""
+    return np.ascontiguousarray(output.numpy().T)

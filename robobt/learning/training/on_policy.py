@@ -142,8 +142,9 @@ class OnPolicyRun(TrainingRun):
         if lesson is not None:
             lesson.share_out(self._steps, self._rng)
             rollout.shown = np.zeros_like(rollout.action)
+        truncated, last = np.zeros((ticks, n), dtype=np.bool_), []
         for t in range(ticks):
-            action, log_probability, value = agent.act(self._observation, self._rng)
+            action = agent.act(self._observation, self._rng)
             if not np.isfinite(action).all():
                 raise TrainError(
                     f"{self._folder.path}: the policy's action is not finite after {self._steps} steps"
@@ -157,15 +158,19 @@ class OnPolicyRun(TrainingRun):
             if lesson is not None:
                 lesson.begin(step)
             rollout.observation[t], rollout.action[t] = self._observation, action
-            rollout.log_probability[t], rollout.value[t] = log_probability, value
             rollout.reward[t], rollout.terminated[t] = step.reward, step.terminated
             rollout.ended[t] = step.terminated | step.truncated
-            if step.truncated.any():
-                rollout.next_value[t, step.truncated] = agent.values(step.final_observation[step.truncated])
+            truncated[t] = step.truncated
+            last.append(step.final_observation[step.truncated])
             self._observation = step.observation
+        # Weighing all steps at once is quicker than each.
+        seen, done = (steps.reshape(ticks * n, -1) for steps in (rollout.observation, rollout.action))
+        rollout.log_probability[:] = agent.log_probabilities(seen, done).reshape(ticks, n)
+        values = agent.values(np.concatenate([seen, self._observation, *last]))
+        following = values[n : ticks * n + n].reshape(ticks, n)
+        rollout.value[:], rollout.next_value[:] = values[: ticks * n].reshape(ticks, n), following
         # Where no episode has ended the next value is that of the next step.
-        following = np.concatenate((rollout.value[1:], agent.values(self._observation)[None]))
-        rollout.next_value[~rollout.ended] = following[~rollout.ended]
+        rollout.next_value[truncated] = values[ticks * n + n :]
         return rollout
 
 

@@ -58,51 +58,79 @@ def test_actions_are_weighed_as_a_normal_and_a_coin_are():
     with torch.no_grad():
         it.actor.body[-1].weight.mul_(100.0)
     seen = np.random.default_rng(1).normal(size=(50, 2))
-    action, log_probability, _ = it.act(seen, np.random.default_rng(2))
+    action = it.act(seen, np.random.default_rng(2))
     assert set(action[:, 1]) == {-1.0, 1.0}
     with torch.no_grad():
         output = it.actor.body(torch.from_numpy(seen.astype(np.float32)) * it.actor.inverse_scale)
         taken = torch.from_numpy(action.astype(np.float32))
         normal, coin = Normal(torch.tanh(output[:, 0]), 0.7), Bernoulli(logits=output[:, 1])
         expected = normal.log_prob(taken[:, 0]) + coin.log_prob((taken[:, 1] > 0).float())
-        _, entropy = it._evaluate_actions(it._policy_output(torch.from_numpy(seen.astype(np.float32))), taken)
-        assert torch.allclose(entropy, normal.entropy() + coin.entropy(), atol=1e-5)
-    np.testing.assert_allclose(log_probability, expected.numpy(), atol=1e-5)
+    np.testing.assert_allclose(it.log_probabilities(seen, action), expected.numpy(), atol=1e-5)
 
 
 def test_the_drawn_actions_have_the_spread_and_the_odds_that_were_asked_for():
     it = agent(init_std=0.5, threshold_bias=-1.5)
-    action, _, _ = it.act(np.zeros((4000, 2)), np.random.default_rng(3))
+    action = it.act(np.zeros((4000, 2)), np.random.default_rng(3))
     assert action[:, 0].std() == pytest.approx(0.5, rel=0.05)
     assert (action[:, 1] > 0).mean() == pytest.approx(1 / (1 + np.exp(1.5)), abs=0.02)
 
 
-def test_a_first_step_follows_the_policy_gradient():
-    # Before the first update rho is 1, so that the gradient of (3) is the mean of A grad log pi.
-    it, same = agent(max_grad_norm=100.0, ent_coef=0.0), agent(max_grad_norm=100.0, ent_coef=0.0)
+def weighed(it: PPO, seen: torch.Tensor, action: torch.Tensor) -> tuple[torch.Tensor, torch.Tensor]:
+    """Log-probability and entropy by torch's distributions, with gradients."""
+    output = it._policy_output(seen)
+    normal, coin = Normal(output[:, 0], it._log_std.exp()), Bernoulli(logits=output[:, 1])
+    log_probability = normal.log_prob(action[:, 0]) + coin.log_prob((action[:, 1] > 0).float())
+    return log_probability, normal.entropy() + coin.entropy()
+
+
+@pytest.mark.parametrize("imitation", [0.0, 0.3])
+@pytest.mark.parametrize("rows", [64, 700])
+def test_a_step_follows_the_gradient_of_the_clipped_objective(rows: int, imitation: float):
+    it = agent(max_grad_norm=100.0, ent_coef=0.05, init_std=0.7)
+    with torch.no_grad():
+        it.actor.body[-1].weight.mul_(100.0)
     rng = np.random.default_rng(4)
-    seen = rng.normal(size=(64, 2))
-    action, log_probability, _ = it.act(seen, rng)
-    advantage = rng.normal(size=64)
-    tensors = [torch.from_numpy(x.astype(np.float32)) for x in (seen, action, log_probability, advantage)]
-    it._update_policy(*tensors)
-    weights = same._actor_adam.weights
+    seen = rng.normal(size=(rows, 2))
+    action = it.act(seen, rng)
+    old = it.log_probabilities(seen, action) + rng.normal(0.0, 0.3, rows)
+    advantage, shown = rng.normal(size=rows), rng.uniform(-1.0, 1.0, (rows, 2))
+    tensors = [torch.from_numpy(x.astype(np.float32)) for x in (seen, action, old, advantage, shown)]
+    now, entropy = weighed(it, tensors[0], tensors[1])
     standard = (tensors[3] - tensors[3].mean()) / (tensors[3].std() + 1e-8)
-    log_now, _ = same._evaluate_actions(same._policy_output(tensors[0]), tensors[1])
-    expected = torch.autograd.grad(-(standard * log_now).mean(), weights)
+    ratio = (now - tensors[2]).exp()
+    assert ((ratio > 1.2) & (standard > 0.0)).any()
+    assert ((ratio < 0.8) & (standard < 0.0)).any()
+    gain = torch.minimum(ratio * standard, ratio.clamp(0.8, 1.2) * standard).mean()
+    output, wanted = it._policy_output(tensors[0]), tensors[4]
+    missed = (output - wanted)[:, 0].square() - Bernoulli(logits=output[:, 1]).log_prob(
+        (wanted[:, 1] > 0).float()
+    )
+    loss = -gain - 0.05 * entropy.mean() + imitation * missed.mean()
+    expected = torch.autograd.grad(loss, it._actor_adam.weights)
+    done, weighed_old, gains, taught = (x.numpy().T.copy() for x in tensors[1:])
+    it._update_policy(tensors[0], done, weighed_old, gains, False, (taught, imitation) if imitation else None)
     # After one step the first moment is a tenth of the gradient.
     for found, wanted in zip(it._actor_adam.moments["exp_avg"], expected, strict=True):
         torch.testing.assert_close(10.0 * found, wanted, atol=1e-6, rtol=1e-4)
 
 
+def test_the_values_step_follows_the_gradient_of_the_squared_error():
+    it, rng = agent(max_grad_norm=100.0), np.random.default_rng(4)
+    seen, target = (torch.from_numpy(rng.normal(size=size).astype(np.float32)) for size in ((64, 2), 64))
+    loss = 0.5 * (it._values(seen) - target).square().mean()
+    expected = torch.autograd.grad(loss, it._critic_adam.weights)
+    it._update_value(seen, target.numpy())
+    for found, wanted in zip(it._critic_adam.moments["exp_avg"], expected, strict=True):
+        torch.testing.assert_close(10.0 * found, wanted, atol=1e-6, rtol=1e-4)
+
+
 def test_what_has_moved_far_enough_is_not_moved_on():
     it = agent(ent_coef=0.0)
-    seen, action = torch.zeros(4, 2), torch.tensor([[0.3, -1.0], [-0.3, -1.0]] * 2)
-    now, _ = it._evaluate_actions(it._policy_output(seen), action)
+    seen, action = np.zeros((4, 2)), np.array([[0.3, -1.0], [-0.3, -1.0]] * 2)
     # All that is good has become likelier by more than the clip allows, all that is bad unlikelier.
-    advantage = torch.tensor([1.0, -1.0] * 2)
-    old = now.detach() - 0.5 * advantage
-    it._update_policy(seen, action, old, advantage)
+    advantage = np.array([1.0, -1.0] * 2, dtype=np.float32)
+    old = it.log_probabilities(seen, action).astype(np.float32) - 0.5 * advantage
+    it._update_policy(torch.zeros(4, 2), action.T.astype(np.float32), old, advantage)
     assert all((moment == 0.0).all() for moment in it._actor_adam.moments["exp_avg"])
 
 
@@ -115,7 +143,7 @@ def test_the_diagnostics_of_an_update_are_what_their_names_say():
         torch.from_numpy(x.reshape(64, 2).astype(np.float32)) for x in (rollout.observation, rollout.action)
     )
     with torch.no_grad():
-        now, entropy = it._evaluate_actions(it._policy_output(seen), action)
+        now, entropy = weighed(it, seen, action)
         value = it._values(seen)
     shift = torch.linspace(-0.5, 0.5, 64)
     rollout.log_probability[:] = (now - shift).reshape(8, 8).numpy()
@@ -143,7 +171,9 @@ def test_it_learns_what_pays_from_rollouts():
     for _ in range(60):
         rollout = Rollout.empty(1, 256, 2, 2)
         rollout.observation[0] = rng.uniform(-1.0, 1.0, (256, 2))
-        rollout.action[0], rollout.log_probability[0], rollout.value[0] = it.act(rollout.observation[0], rng)
+        rollout.action[0] = it.act(rollout.observation[0], rng)
+        rollout.log_probability[0] = it.log_probabilities(rollout.observation[0], rollout.action[0])
+        rollout.value[0] = it.values(rollout.observation[0])
         seen, done = rollout.observation[0], rollout.action[0]
         rollout.reward[0] = -np.square(done[:, 0] - 0.8 * seen[:, 0]) + np.sign(done[:, 1] * seen[:, 1])
         rollout.terminated[:] = rollout.ended[:] = True
@@ -165,14 +195,16 @@ def test_a_central_value_knows_what_the_policy_does_not():
     for _ in range(40):
         rollout = Rollout.empty(1, 128, 2, 1)
         rollout.observation[0] = rng.uniform(-1.0, 1.0, (128, 2))
-        rollout.action[0], rollout.log_probability[0], rollout.value[0] = it.act(rollout.observation[0], rng)
+        rollout.action[0] = it.act(rollout.observation[0], rng)
+        rollout.log_probability[0] = it.log_probabilities(rollout.observation[0], rollout.action[0])
+        rollout.value[0] = it.values(rollout.observation[0])
         rollout.reward[0] = rollout.observation[0, :, 1]
         rollout.terminated[:] = rollout.ended[:] = True
         it.update(rollout, rng)
     both = np.array([[0.3, -0.8], [0.3, 0.8]])
     np.testing.assert_allclose(it.values(both), [-0.8, 0.8], atol=0.15)
     assert it.actor.build["scale"] == [1.0]
-    first, second = (it.act(both[[k]], np.random.default_rng(9))[0] for k in range(2))
+    first, second = (it.act(both[[k]], np.random.default_rng(9)) for k in range(2))
     np.testing.assert_array_equal(first, second)
 
 
@@ -206,11 +238,11 @@ def test_what_it_draws_in_the_balls_frame_is_about_what_it_does_without_noise():
     with torch.no_grad():
         it.actor.body[-1].weight.mul_(300.0)
     seen = np.tile(np.random.default_rng(1).normal(size=(1, 4)), (8000, 1))
-    action, log_probability, _ = it.act(seen, np.random.default_rng(2))
+    action = it.act(seen, np.random.default_rng(2))
     mean = policy_of(it.actor)(seen[:1])[0]
     np.testing.assert_allclose(action.mean(axis=0), mean, atol=0.03)
     expected = Normal(torch.from_numpy(mean), 0.5).log_prob(torch.from_numpy(action)).sum(-1)
-    np.testing.assert_allclose(log_probability, expected.numpy(), atol=1e-4)
+    np.testing.assert_allclose(it.log_probabilities(seen, action), expected.numpy(), atol=1e-4)
 
 
 @pytest.mark.parametrize(("share", "horizon"), [(0.0, 10.0), (0.5, 30.0), (1.0, 50.0)])

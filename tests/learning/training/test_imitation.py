@@ -125,7 +125,7 @@ def test_imitation_leaves_the_spread_alone() -> None:
     assert error is not None
     assert error < 0.2
     assert one.state()["spread.log"] == pytest.approx(np.log(0.5))
-    answer, _, _ = one.act(rollout.observation[0], rng)
+    answer = one.act(rollout.observation[0], rng)
     assert (np.sign(answer[:, 1]) == rollout.action[0, :, 1]).mean() > 0.8
 
 
@@ -141,8 +141,10 @@ def test_a_policy_that_improves_stays_close_to_what_a_teacher_shows() -> None:
             rollout.shown[..., 0] = np.clip(-rollout.observation[..., 0], -1.0, 1.0)
             rollout.shown[..., 1] = -1.0
             for t in range(20):
-                acted = one.act(rollout.observation[t], rng)
-                rollout.action[t], rollout.log_probability[t], rollout.value[t] = acted
+                seen = rollout.observation[t]
+                rollout.action[t] = one.act(seen, rng)
+                rollout.log_probability[t] = one.log_probabilities(seen, rollout.action[t])
+                rollout.value[t] = one.values(seen)
             # It is rewarded for the opposite of what the teacher does.
             rollout.reward[:] = -rollout.action[..., 0] * rollout.shown[..., 0]
             one.update(rollout, rng, imitation=weight)
