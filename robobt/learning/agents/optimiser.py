@@ -64,9 +64,10 @@ class Adam:
 
     def clipped_step(self, gradients: Sequence[Tensor], max_grad_norm: float) -> Tensor:
         """Take a step along gradients clipped to ``max_grad_norm``; return their norm before clipping."""
-        norm = torch.nn.utils.get_total_norm(gradients)
+        gradients = list(gradients)
+        norm: Tensor = torch.linalg.vector_norm(torch.stack(torch._foreach_norm(gradients)))
         share = (max_grad_norm / (norm + 1e-6)).clamp(max=1.0)
-        self.step([gradient * share for gradient in gradients])
+        self.step(torch._foreach_mul(gradients, share))
         return norm
 
     def set_learning_rate(self, fraction: float) -> None:
