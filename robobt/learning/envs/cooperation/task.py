@@ -9,7 +9,6 @@ from pydantic import Field
 
 from robobt.challenges.cooperation import BALL_START, FAST_BALL, PLACES
 from robobt.challenges.handover import JUNIOR_ROW, MAJOR_ROW, Handover
-from robobt.learning.envs.arena_task import Policy
 from robobt.learning.envs.judging import goals
 from robobt.learning.envs.scripted import TAKEN_DISTANCE
 from robobt.learning.envs.soccer.rewards import REWARD_MEMORY, SoccerReward
@@ -17,6 +16,7 @@ from robobt.learning.envs.soccer.settings import LEARNER, Role, SoccerRules, Soc
 from robobt.learning.envs.soccer.task import SoccerTask
 from robobt.learning.envs.starts import MOUTH_GAP, places_of, start_parts
 from robobt.learning.envs.task import BoolArray, EpisodeEnds, FloatArray, IntArray
+from robobt.learning.envs.task_parts import Policy
 from robobt.models.actions import SCORE_ACTION, ActionScaling
 from robobt.world.compiled import numbers_of
 from robobt.world.geometry import Point
