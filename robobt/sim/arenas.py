@@ -16,6 +16,7 @@ from robobt.sim.chance import seeded
 from robobt.sim.chipmunk import NO_CALLS, ROW, BodyBuffer
 from robobt.sim.contacts.solver import contact_arrays
 from robobt.sim.kernels import control_tick
+from robobt.sim.parameters import rolling_speeds
 from robobt.sim.records import ARENA, COMMAND, KEPT, WHEEL_DRIVE, BoolArray, IntArray, RecordArray, size
 from robobt.sim.reports import report
 from robobt.sim.settings import SimSettings
@@ -210,12 +211,21 @@ class Arenas:
         kept["cooldown"][which] = kept["charging"][which] = 0.0
         for axis in ("vx", "vy", "omega"):
             kept["followed"][axis][which] = 0.0
-        self._arrays.drives[which] = 0.0
+        self._drive_anew((which, slice(None)), rows[which, :count])
         self.touch[which] = -1
         self.kicked[which] = False
         self._forget_commands(which)
         self._arrays.contacts.forget(which)
         self._write()
+
+    def _drive_anew(self, which: tuple[int | IntArray, int | IntArray | slice], robots: FloatArray) -> None:
+        """Let the wheels of robots that were just placed roll at the robots' speeds."""
+        self._arrays.drives[which] = 0.0
+        if self.settings.wheels is not None:
+            rims = self._arrays.drives.view(WHEEL_DRIVE)["rims"]
+            speeds = rolling_speeds(self.settings.wheels, robots)
+            for kind in ("speed", "target", "next"):
+                rims[kind][(*which, 0)] = speeds
 
     def place_ball(
         self,
@@ -264,7 +274,7 @@ class Arenas:
         self._arrays.bodies[arena, robot] = state
         kept = self._arrays.kept.view(KEPT)
         kept["cooldown"][arena, robot] = kept["charging"][arena, robot] = 0.0
-        self._arrays.drives[arena, robot] = 0.0
+        self._drive_anew((arena, robot), np.asarray(state, dtype=np.float64))
         self._arrays.contacts.forget(arena)
         self._write()
 

@@ -12,6 +12,7 @@ from robobt.sim.robot_settings import WheelSettings
 from robobt.sim.settings import SimSettings
 from robobt.world.ball_model import GRAVITY
 from robobt.world.compiled import numbers_of
+from robobt.world.geometry import FloatArray
 
 
 def arena_parameters(settings: SimSettings) -> RecordArray:
@@ -38,6 +39,22 @@ def arena_parameters(settings: SimSettings) -> RecordArray:
     )
 
 
+def rolling_speeds(wheels: WheelSettings, robots: FloatArray) -> FloatArray:
+    """Return how fast the wheels of robots turn that roll without slipping, (..., 4) [m/s].
+
+    Args:
+        wheels: of the robots.
+        robots: (..., 6) x, y, heading, vx, vy, omega [m, rad, m/s, rad/s].
+    """
+    heading, vx, vy, turn = (robots[..., i, None] for i in range(2, 6))
+    angles = np.radians(wheels.angles)
+    ahead = np.cos(heading) * vx + np.sin(heading) * vy
+    aside = np.cos(heading) * vy - np.sin(heading) * vx
+    arm = (wheels.inner_edge + wheels.outer_edge) / 2
+    speeds: FloatArray = arm * turn - ahead * np.sin(angles) + aside * np.cos(angles)
+    return speeds
+
+
 def wheel_parameters(wheels: WheelSettings | None) -> RecordArray:
     """Return an arena's :class:`~robobt.sim.records.Wheels`."""
     if wheels is None:
@@ -51,12 +68,18 @@ def wheel_parameters(wheels: WheelSettings | None) -> RecordArray:
     weight = wheels.mass * GRAVITY
     loads = weight * rest + weight * wheels.centre * ahead
     moved = wheels.mass * wheels.height
+    moved_ahead, moved_aside = moved * wheels.grip_ahead, moved * wheels.grip_aside
+    # A turning wheel's resistance moves load too, and that the grip feels whole.
+    turned = wheels.wheel_mass / 2 * wheels.radius
     return filled(
         WHEELS,
         wheels,
         # A cylinder that rolls resists as if half its mass were at the rim.
         rim_mass=wheels.wheel_mass / 2,
         motor=wheels.torque / wheels.radius,
-        gyro=wheels.wheel_mass / 2 * wheels.radius / (wheels.mass * wheels.height),
-        each=list(zip(cos, sin, loads, moved * ahead, moved * aside, strict=True)),
+        gyro_ahead=turned / moved_ahead,
+        gyro_aside=turned / moved_aside,
+        motor_ahead=(1.0 - wheels.grip_ahead) * wheels.radius / moved_ahead,
+        motor_aside=(1.0 - wheels.grip_aside) * wheels.radius / moved_aside,
+        each=list(zip(cos, sin, loads, moved_ahead * ahead, moved_aside * aside, strict=True)),
     )

@@ -151,12 +151,17 @@ class Kept:
 class WheelDrive:
     """What is kept of a robot with wheels.
 
-    The acceleration that the loads follow [m/s^2], the time to the next frame [s], and how it holds the ball.
+    The acceleration that the loads follow [m/s^2], the time to the next frame [s], the robot's velocity and
+    heading when the frame began [m/s, rad, rad/s], and how it holds the ball.
     """
 
     lean_ahead: float
     lean_aside: float
     clock: float
+    vx: float
+    vy: float
+    heading: float
+    omega: float
     hinge: Hinge
     rims: Annotated[Records[Rim], 4]
 
@@ -175,7 +180,8 @@ class Wheels:
     """Parameters of a robot's wheels, as :class:`~robobt.sim.robot_settings.WheelSettings`.
 
     A mass of 0 means that it has none. ``rim_mass`` is what a wheel adds to the inertia along its rim [kg],
-    ``motor`` the most its motor pushes with [N], ``gyro`` how much it resists being turned.
+    ``motor`` the most its motor pushes with [N], ``gyro_ahead`` and ``gyro_aside`` how much it resists
+    being turned.
     """
 
     mass: float
@@ -191,7 +197,10 @@ class Wheels:
     centre: float
     rim_mass: float
     motor: float
-    gyro: float
+    gyro_ahead: float
+    gyro_aside: float
+    motor_ahead: float
+    motor_aside: float
     each: Annotated[Records[Wheel], 4]
 
 

@@ -53,7 +53,19 @@ class WheelSettings(Settings):
     wheel_mass: float = Field(0.2, gt=0.001, le=2, description="of one wheel [kg]")
     centre: float = Field(-0.002, ge=-0.05, le=0.05, description="centre of mass, ahead of the centre [m]")
     height: float = Field(0.074, ge=0, le=0.2, description="centre of mass above the ground [m]")
-    torque: float = Field(0.2, gt=0, le=10, description="most that a wheel's motor gives [N m]")
+    torque: float = Field(0.17, gt=0, le=10, description="most that a wheel's motor gives [N m]")
+    grip_ahead: float = Field(
+        0.26,
+        gt=0.01,
+        le=1,
+        description="share of the load moved by acceleration ahead that the grip feels",
+    )
+    grip_aside: float = Field(
+        0.17,
+        gt=0.01,
+        le=1,
+        description="share of the load moved by acceleration aside that the grip feels",
+    )
     tangent_friction: float = Field(0.8, gt=0, le=5, description="coefficient where the wheel drives")
     axial_friction: float = Field(0.05, ge=0, le=5, description="coefficient where its rollers roll")
     load_lag: float = Field(

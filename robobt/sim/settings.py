@@ -36,6 +36,9 @@ class BallSettings(BallModel):
     mass: float = Field(0.046, gt=0.001, le=1, description="mass [kg]")
     stop_speed: float = Field(0.001, gt=0, le=0.5, description="slower than this is at rest [m/s]")
     placed_rolls: bool = Field(True, description="whether a ball that is placed moving rolls, or slides")
+    separate_axes: bool = Field(
+        False, description="whether friction stops sliding along the field's x and y axes independently"
+    )
 
     @property
     def model(self) -> BallModel:
@@ -100,7 +103,7 @@ _GRSIM_BALL = BallSettings(
 )
 
 _GRSIM = SimSettings(
-    ball=_GRSIM_BALL.model_copy(update={"stop_speed": 0.01, "placed_rolls": False}),
+    ball=_GRSIM_BALL.model_copy(update={"stop_speed": 0.01, "placed_rolls": False, "separate_axes": True}),
     body=BodySettings(mass=2.82, face=0.0805, mouth_width=0.08, sensor_depth=0.01),
     wheels=WheelSettings(),
     shell=ShellSettings(),

@@ -46,9 +46,14 @@ class Deviation:
     ball: float
 
     @property
+    def robot_close(self) -> bool:
+        """Whether the robots follow the recording: 40 mm and 0.1 rad."""
+        return self.robot <= 0.04 and self.heading <= 0.1
+
+    @property
     def close(self) -> bool:
-        """Whether the replay follows the recording: robot 40 mm and 0.1 rad, ball 60 mm."""
-        return self.robot <= 0.04 and self.heading <= 0.1 and self.ball <= 0.06
+        """Whether the replay follows the recording: the robots, and the ball within 60 mm."""
+        return self.robot_close and self.ball <= 0.06
 
 
 @dataclass(frozen=True)

@@ -25,5 +25,6 @@ def test_the_names_say_what_was_commanded() -> None:
 def test_the_manoeuvres_go_as_in_the_real_grsim_but_for_the_known_ones() -> None:
     deviations = [replay(manoeuvre) for manoeuvre in read_manoeuvres(Path(str(FILE)))]
     print(table(deviations))
-    # Beyond: turning at 10 rad/s while driving, some catches while turning, robots that meet head-on.
-    assert sum(found.close for found in deviations) >= 0.88 * len(deviations), table(deviations)
+    # Beyond: robots that meet head-on; and the ball, where a fast robot's plate or its corner hits it.
+    assert sum(found.robot_close for found in deviations) >= 0.97 * len(deviations), table(deviations)
+    assert sum(found.close for found in deviations) >= 0.72 * len(deviations), table(deviations)
