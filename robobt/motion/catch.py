@@ -58,7 +58,7 @@ def catch(me: RobotState, ball: BallState, limits: RobotLimits, period: float) -
     slow = _MEETING_SHARE * me.limits.receives
     closing = sqrt(slow * slow + 2.0 * _GIVING_SHARE * limits.acceleration * gap)
     # The speed is limited so that the robot stops before it has carried the ball too far.
-    most = min(limits.max_speed, sqrt(2.0 * _GIVING_SHARE * me.limits.hold_acceleration * _CARRY))
+    most = min(limits.max_speed, sqrt(2.0 * _GIVING_SHARE * me.limits.holds_straight * _CARRY))
     away = min(most, max(0.0, speed - closing))
     onward = me.vx * ux + me.vy * uy
     rest = max(_LEAST_GIVING_SHARE * step, sqrt(max(0.0, step * step - (across - leftward) ** 2)))

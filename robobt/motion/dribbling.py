@@ -19,6 +19,9 @@ MAX_ACCELERATION = 1.5
 TURN_ACCELERATION = 15.0
 """Change of the turning rate at which the default dribbler holds the ball [rad/s^2]."""
 
+_PRESS = 0.05
+"""Speed at which the robot follows the ball that it turns round, so that it stays in the mouth [m/s]."""
+
 _ROLLS_AT = 0.1
 """A ball that comes no faster than this moves ahead with a robot that drives into it [m/s]."""
 
@@ -67,8 +70,8 @@ def carrying_limits(
         max_turn: turning rate [rad/s].
         max_acceleration: acceleration and braking [m/s^2].
     """
-    held = own.hold_acceleration
-    return dribbling_limits(max_speed, min(max_turn, sqrt(held / TOUCH_DISTANCE)), max_acceleration, held)
+    turn = min(max_turn, sqrt(own.hold_acceleration / TOUCH_DISTANCE))
+    return dribbling_limits(max_speed, turn, max_acceleration, own.holds_straight)
 
 
 def carrying_share(own: RobotLimits) -> float:
@@ -78,7 +81,7 @@ def carrying_share(own: RobotLimits) -> float:
 
 def settle(me: RobotState, period: float) -> RobotCommand:
     """Come to rest with the ball."""
-    limits = dribbling_limits(max_acceleration=min(MAX_ACCELERATION, me.limits.hold_acceleration))
+    limits = dribbling_limits(max_acceleration=min(MAX_ACCELERATION, me.limits.holds_straight))
     return turn_with_ball(me, me.heading, limits, period)
 
 
@@ -114,6 +117,33 @@ def drive_gently(
 def turn_with_ball(me: RobotState, heading: float, limits: RobotLimits, period: float) -> RobotCommand:
     """Turn on the spot to ``heading`` [rad] with the ball in the dribbler."""
     turn = command(me, 0.0, 0.0, turn_rate(me, heading, limits, period), limits, period)
+    turn.dribbler = True
+    return turn
+
+
+def turn_to(
+    me: RobotState, ball: BallState, heading: float, limits: RobotLimits, period: float
+) -> RobotCommand:
+    """Turn to ``heading`` [rad] with the ball in the dribbler, as the dribbler holds it.
+
+    One strong enough swings the ball round the robot, which turns on the spot. With a weaker one the robot
+    turns round the ball, which comes to rest and then needs no pull.
+
+    Args:
+        me: the robot, with the ball.
+        ball: the ball.
+        heading: where the mouth is to point [rad].
+        limits: how to turn with the ball.
+        period: time until the next command [s].
+    """
+    own = me.limits
+    if limits.max_turn**2 * TOUCH_DISTANCE <= own.hold_acceleration:
+        return turn_with_ball(me, heading, limits, period)
+    omega = turn_rate(me, heading, limits, period)
+    c, s = cos(me.heading), sin(me.heading)
+    ahead = max(_PRESS, c * ball.vx + s * ball.vy - own.holds_straight * period)
+    vx, vy = ahead * c + omega * (ball.y - me.y), ahead * s - omega * (ball.x - me.x)
+    turn = command(me, vx, vy, omega, own, period)
     turn.dribbler = True
     return turn
 

@@ -196,7 +196,10 @@ PRESETS: dict[str, SimSettings] = {
             max_turn=10.0,
             turn_acceleration=75.0,
             catch_speed=0.5,
+            receive_speed=3.0,
+            # In a turn it keeps the ball at 2 rad/s; straight, in any direction, at 1 m/s^2 and more.
             hold_acceleration=0.35,
+            hold_straight=1.0,
             touch_kept=0.87,
             touch_returned=0.17,
             kick_carried=0.9,

@@ -48,6 +48,12 @@ class RobotLimits(Settings):
     hold_acceleration: float = Field(
         3.0, gt=0, le=100, description="acceleration, as by braking or turning, at which it keeps it [m/s^2]"
     )
+    hold_straight: float | None = Field(
+        None,
+        gt=0,
+        le=100,
+        description="that acceleration while it does not turn; None: hold_acceleration [m/s^2]",
+    )
     carry_aside: float | None = Field(
         None, gt=0, le=10, description="speed sideways at which it keeps it; None: any [m/s]"
     )
@@ -105,6 +111,11 @@ class RobotLimits(Settings):
     def receives(self) -> float:
         """Speed at which a ball may come at the dribbler [m/s]."""
         return self.catch_speed if self.receive_speed is None else self.receive_speed
+
+    @property
+    def holds_straight(self) -> float:
+        """Acceleration at which a robot that does not turn keeps the ball [m/s^2]."""
+        return self.hold_acceleration if self.hold_straight is None else self.hold_straight
 
     @property
     def angular_braking(self) -> float:

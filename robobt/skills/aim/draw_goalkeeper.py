@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import field
 from math import inf
 
-from robobt.motion.dribbling import dribbling_limits, turn_with_ball
+from robobt.motion.dribbling import dribbling_limits, turn_to
 from robobt.skills.base import Skill, skill
 from robobt.tree import Status
 from robobt.world.geometry import direction, wrap_angle
@@ -66,7 +66,7 @@ class DrawGoalkeeper(Skill):
         elif frame.time - self._there_since >= self.hold - 1e-9:
             self._side = -self._side
             self._there_since = inf
-        self.store.command = turn_with_ball(me, self._aim(self._side), self._limits, frame.period)
+        self.store.command = turn_to(me, ball, self._aim(self._side), self._limits, frame.period)
         return self.run("to the left post" if self._side > 0.0 else "to the right post")
 
     def _aim(self, side: float) -> float:

@@ -65,7 +65,7 @@ def pull(
         pulling = dribbling_limits(
             max_speed=speed,
             max_turn=1.0,
-            max_acceleration=min(_PULL_ACCELERATION, me.limits.hold_acceleration),
+            max_acceleration=min(_PULL_ACCELERATION, me.limits.holds_straight),
         )
         near = distance(me.position, place) < _STEADY_DISTANCE
         heading = me.heading if near else direction(place, me.position)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from math import cos, inf
+from math import cos, inf, sin
 
 from robobt.motion.dribbling import carrying_share
 from robobt.skills.base import Skill, skill
@@ -20,6 +20,9 @@ LOOSE_KICK_SPEED = 2.0
 
 FOLLOW = 0.3
 """How fast the robot goes after the ball [m/s]."""
+
+_TWIST = 6.0
+"""Turning rate at which a ball leaves two weak dribblers sideways [rad/s]."""
 
 
 @dataclass(slots=True)
@@ -68,12 +71,20 @@ class KickLoose(Skill):
     def on_running(self) -> Status:
         """Look for a hold, and kick once it has lasted."""
         frame, me, ball, now = self.frame, self.me, self.ball, self.frame.time
-        if not has_ball(me, ball) or not any(has_ball(other, ball) for other in frame.opponents):
+        holders = [other for other in frame.opponents if has_ball(other, ball)]
+        if not has_ball(me, ball) or not holders:
             return self.fail("no opponent holds the ball too")
-        patience = self.patience * carrying_share(me.limits)
+        strength = carrying_share(me.limits)
+        patience = self.patience * strength
         if not has_lasted(self._hold, now, me.heading, patience):
             return self.fail("it may get away with the ball yet")
         command = self.store.command
+        if strength < 1.0:
+            # Two rollers drive a kicked ball back between them, but neither holds one that is turned out.
+            other = holders[0]
+            left = cos(me.heading) * (other.y - me.y) - sin(me.heading) * (other.x - me.x)
+            command.vx, command.omega, command.dribbler = FOLLOW, -_TWIST if left > 0.0 else _TWIST, True
+            return self.run("turning it out")
         command.vx, command.kick_speed, command.kick_trigger = (
             FOLLOW,
             LOOSE_KICK_SPEED,

@@ -5,7 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 from math import atan2, cos, radians, sin
 
-from robobt.motion.dribbling import carried_into_kick, dribbling_limits, sideways_after_kick, turn_with_ball
+from robobt.motion.dribbling import (
+    carried_into_kick,
+    dribbling_limits,
+    sideways_after_kick,
+    turn_to,
+)
 from robobt.motion.path_planner import TARGETS, allowed_target, next_waypoint, travel
 from robobt.motion.pilot import roughly
 from robobt.motion.run_up import RUN_UP_SPEED, run_up
@@ -189,7 +194,7 @@ class KickToTarget(DrivingSkill):
 
     def _turn_with_ball(self, order: _Order) -> None:
         heading = direction(self.ball.position, order.target)
-        self.store.command = turn_with_ball(self.me, heading, self._carry, self.frame.period)
+        self.store.command = turn_to(self.me, self.ball, heading, self._carry, self.frame.period)
 
     def _come_from_behind(self, order: _Order) -> None:
         frame, me, ball = self.frame, self.me, self.ball

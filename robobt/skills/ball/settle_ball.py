@@ -78,7 +78,7 @@ class SettleBall(Skill):
             return self.fail("it does not have the ball")
         if is_settled(self._settling, frame.time, ball.speed, self.slow, self.pause):
             return self.fail("the ball is settled")
-        held = self.share * me.limits.hold_acceleration
+        held = self.share * me.limits.holds_straight
         if not is_braked(ball.speed, held):
             self.store.command = turn_with_ball(me, me.heading, me.limits, frame.period)
             return self.run("letting it roll ahead")

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import field
-from math import copysign, cos, hypot, inf, sin, sqrt
+from math import atan2, copysign, cos, hypot, inf, radians, sin, sqrt
 
 from robobt.motion.dribbling import settle
 from robobt.motion.path_planner import travel
-from robobt.motion.pilot import drive
+from robobt.motion.pilot import command, drive, turn_rate
 from robobt.skills.ball.dribble_to import SLIPPED
 from robobt.skills.ball.fetch_ball import pull
 from robobt.skills.base import skill
@@ -15,7 +15,7 @@ from robobt.skills.driving import DrivingSkill
 from robobt.skills.restarts.keep_distance import way_out
 from robobt.tree import Status
 from robobt.world.game import RefereeCommand
-from robobt.world.geometry import Point, direction, distance
+from robobt.world.geometry import Point, direction, distance, wrap_angle
 from robobt.world.rules import STOP_DISTANCE, has_ball
 from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS
 
@@ -52,6 +52,29 @@ _GOAL_MOUTH_DEPTH = 0.12
 _BESIDE_GOAL = 0.25
 """A ball behind the goal line this near to a goal counts as in the corner beside it [m]."""
 
+_STUCK_AFTER, _STUCK_WITHIN = 1.5, 0.03
+"""A ball that has not moved farther than this [m] for this long [s] beside a robot is out of its reach."""
+
+_REACHES = 0.15
+"""Distance from the ball at which the robot is beside it [m]."""
+
+_CORNER_ANGLE = radians(25.0)
+"""Angle to a board at which the edge of a front reaches a ball in a corner, which the hull keeps from its
+middle [rad]."""
+
+_CORNER_START, _CORNER_ASIDE = 0.3, 0.03
+"""Where the robot starts towards that ball: its distance behind, and that of the ball from its middle line
+[m]."""
+
+_CORNER_SPEED, _CORNER_PRESS = 0.2, 0.05
+"""Speeds towards that ball and towards the other board [m/s]."""
+
+_CORNER_TIME = 1.8
+"""How long it drives in before it backs out [s]."""
+
+_AT_START = 0.03
+"""Distance [m] and angle [rad] within which it is there."""
+
 _PLACED_BALL_DISTANCE = STOP_DISTANCE + ROBOT_RADIUS + BALL_RADIUS + 0.1
 
 
@@ -75,11 +98,15 @@ class PlaceBall(DrivingSkill):
     _last_contact: float = field(default=-inf, init=False)
     _inwards: bool = field(default=False, init=False)
     _refuge: Point | None = field(default=None, init=False)
+    _lies: Point = field(default=(inf, inf), init=False)
+    _lies_since: float = field(default=0.0, init=False)
+    _entered: float = field(default=-inf, init=False)
 
     def on_start(self) -> None:
         """Forget that the ball was placed."""
         self._there = self._let_go = self._inwards = False
         self._last_contact = -inf
+        self._lies = (inf, inf)
 
     def on_running(self) -> Status:
         """Drive for one tick."""
@@ -93,6 +120,9 @@ class PlaceBall(DrivingSkill):
         if gap > (_TAKE_AGAIN_DISTANCE if self._there else _LET_GO_DISTANCE):
             self._there = self._let_go = False
             self._refuge = None
+            if self._out_of_reach():
+                self._enter_corner()
+                return self.run("reaching into the corner")
             goal = self._via(spot)
             outwards = direction(goal, ball.position)
             place = (
@@ -105,7 +135,7 @@ class PlaceBall(DrivingSkill):
                 self._holds(),
                 place,
                 self.drive_limits,
-                min(_PLACING_SPEED, sqrt(2.0 * me.limits.hold_acceleration * _STOPS_WITHIN)),
+                min(_PLACING_SPEED, sqrt(2.0 * me.limits.holds_straight * _STOPS_WITHIN)),
                 placing=True,
                 sketch=self.draw,
             )
@@ -140,6 +170,47 @@ class PlaceBall(DrivingSkill):
         if self.me.ball_contact:
             self._last_contact = self.frame.time
         return has_ball(self.me, self.ball) and self.frame.time - self._last_contact < SLIPPED
+
+    def _out_of_reach(self) -> bool:
+        """Return whether the ball has been lying in a corner for long with the robot beside it."""
+        frame, (x, y) = self.frame, self.ball.position
+        if distance((x, y), self._lies) > _STUCK_WITHIN:
+            self._lies, self._lies_since, self._entered = (x, y), frame.time, -inf
+        elif distance((x, y), self.me.position) > _REACHES and frame.time - self._lies_since < _STUCK_AFTER:
+            self._lies_since = frame.time
+        in_corner = abs(x) > frame.field.half_length and abs(y) > frame.field.half_width
+        return in_corner and frame.time - self._lies_since >= _STUCK_AFTER
+
+    def _enter_corner(self) -> None:
+        """Drive into the corner along one board, so that the edge of the front reaches the ball."""
+        frame, me, (x, y) = self.frame, self.me, self.ball.position
+        side = copysign(1.0, x * y)
+        heading = atan2(copysign(sin(_CORNER_ANGLE), y), copysign(cos(_CORNER_ANGLE), x))
+        c, s = cos(heading), sin(heading)
+        aside = side * _CORNER_ASIDE
+        start = (x - _CORNER_START * c + aside * s, y - _CORNER_START * s - aside * c)
+        if distance(me.position, start) < _AT_START and abs(wrap_angle(me.heading - heading)) < _AT_START:
+            self._entered = frame.time
+        going = frame.time - self._entered
+        if going > _CORNER_TIME + _CORNER_START / _CORNER_SPEED:
+            self.store.command = travel(
+                frame,
+                me,
+                start,
+                heading,
+                self.drive_limits,
+                goalkeeper=True,
+                placing=True,
+                sketch=self.draw,
+            )
+            return
+        ahead, left = _CORNER_SPEED, side * _CORNER_PRESS
+        if going > _CORNER_TIME:
+            ahead, left = -ahead, 0.0
+        vx, vy = ahead * c - left * s, ahead * s + left * c
+        omega = turn_rate(me, heading, me.limits, frame.period)
+        self.store.command = command(me, vx, vy, omega, me.limits, frame.period)
+        self.store.command.dribbler = True
 
     def _via(self, spot: Point) -> Point:
         """Return the ball's current target; from goals, walls and corners it first goes straight inwards."""

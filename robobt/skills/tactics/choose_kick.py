@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import field, replace
 from math import hypot
 
-from robobt.motion.dribbling import carrying_share
+from robobt.motion.dribbling import MAX_ACCELERATION, carrying_share
 from robobt.skills.aim.goalkeeper_watch import GoalkeeperWatch
 from robobt.skills.aim.raters.expected_goal import ExpectedGoal
 from robobt.skills.base import Skill, skill
@@ -122,15 +122,19 @@ class ChooseKick(Skill):
         old_pass, plan, tactics = self._pass, team.plan, team.plan.tactics
         self._shot = self._pass = None
         # A robot that can neither carry the ball nor turn with it gains nothing by waiting.
-        patience = self.patience * carrying_share(me.limits)
-        share = max(self.floor, 1.0 - (frame.time - self._since) / patience)
+        patience = self.patience * min(1.0, me.limits.holds_straight / MAX_ACCELERATION)
+        falling = 1.0 - (frame.time - self._since) / patience
+        share = max(self.floor, falling)
+        # It soon loses a ball that it keeps, so that a pass worth less is better than none.
+        lowest = self.floor * carrying_share(me.limits)
+        keen = max(lowest, falling)
         pressed = has and any(hypot(r.x - ball.x, r.y - ball.y) < tactics.pressed for r in frame.opponents)
         if pressed:
-            share = min(share, 2.0 * self.floor)
+            share, keen = min(share, 2.0 * self.floor), min(keen, 2.0 * lowest)
         shot = self._best_shot()
         behind = (ball.x - 1.0, ball.y)
         hold = worth_at(behind, ball.position, tactics.holds, plan.their_movers, plan.numbers)
-        enough = min(self.pass_at * share, tactics.better * hold)
+        enough = min(self.pass_at * keen, tactics.better * hold)
         late = self.restart and frame.time - self._since > self.patience + tactics.late
         least = 0.0 if late else self.least
         candidates = passes(frame, team, me, old_pass, self.keep, least=least, chips=self.chips)

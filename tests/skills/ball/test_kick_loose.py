@@ -9,7 +9,7 @@ import pytest
 from robobt.skills import KickLoose
 from robobt.testing import frame, held, robot
 from robobt.tree import Status
-from robobt.world import RobotState
+from robobt.world import RobotLimits, RobotState
 from tests.skills.fixed_world import Alone
 
 ME = robot(contact=True)
@@ -31,6 +31,17 @@ def when_held(alone: Alone, me: RobotState, other: RobotState, most: float = 3.0
 
 def test_it_kicks_once_the_hold_has_lasted() -> None:
     assert when_held(Alone(KickLoose(patience=0.6)), ME, FACING) == pytest.approx(0.6, abs=0.02)
+
+
+@pytest.mark.parametrize("y", [0.02, -0.02])
+def test_two_weak_dribblers_lose_a_ball_that_one_turns_out_away_from_the_other(y: float) -> None:
+    alone, me = Alone(KickLoose()), robot(contact=True, limits=RobotLimits(hold_acceleration=0.35))
+    other = robot(FACING.x, y, pi, number=4)
+    for step in range(20):
+        alone.tick(frame(me, BALL, opponents=(other,), time=step / 60))
+    assert alone.command.kick_speed == 0.0
+    assert alone.command.dribbler
+    assert alone.command.omega * y < 0.0
 
 
 def test_it_holds_on_for_longer_before_it_kicks_towards_its_own_goal() -> None:

@@ -97,6 +97,17 @@ def test_a_shot_in_the_run_up_breaks_no_speed_limit_where_a_kick_adds_to_the_rob
     assert 6.0 < fastest <= 6.51
 
 
+@pytest.mark.integration
+@pytest.mark.parametrize("heading", [3.0, -2.0])
+def test_a_dribbler_too_weak_to_swing_the_ball_turns_round_it(heading: float) -> None:
+    ball = (0.0856 * cos(heading), 0.0856 * sin(heading))
+    trial = alone(KickToTarget(target=GOAL), (0.0, 0.0, heading), ball, settings="erforce")
+    trial.run(1.3)
+    assert len(trial.kicks) == 1
+    last = trial.frames[-1].ball
+    assert abs(atan2(last.vy, last.vx) - atan2(-last.y, 4.5 - last.x)) < 0.05
+
+
 def test_a_wide_shot_is_taken_sooner_than_a_narrow_one() -> None:
     me = robot(heading=radians(1.5), contact=True)
     wide, narrow = Alone(KickToTarget()), Alone(KickToTarget())

@@ -88,6 +88,13 @@ def test_a_dribbler_that_holds_little_and_spins_the_ball_places_it_at_once(ball:
     assert lost == 1
 
 
+@pytest.mark.integration
+@pytest.mark.parametrize("ball", [(4.778, 3.278), (-4.778, 3.278)])
+def test_a_ball_in_a_corner_that_the_hull_keeps_from_the_mouth_is_got_out(ball: Point) -> None:
+    last = place(ball, (0.9 * ball[0], 2.8), 12.0, "erforce").frames[-1]
+    assert hypot(last.ball.x - 0.9 * ball[0], last.ball.y - 2.8) < 0.05
+
+
 def test_a_ball_that_lies_before_the_mouth_is_taken_before_it_is_pulled() -> None:
     alone, me = Alone(PlaceBall()), robot()
     for step in range(12):

@@ -10,7 +10,7 @@ from robobt.skills.tactics.choose_kick import ChooseKick
 from robobt.skills.tactics_settings import TacticsSettings
 from robobt.testing import frame, held, robot
 from robobt.tree import Status
-from robobt.world import GameState, RobotState, Team
+from robobt.world import GameState, RobotLimits, RobotState, Team
 from robobt.world.geometry import segment_distance
 from tests.skills.fixed_world import Alone
 from tests.skills.refereed import OPEN, free_kick
@@ -74,6 +74,20 @@ def test_a_weak_pass_is_played_once_an_opponent_presses(gap: float, status: Stat
     weak = chooser.alone.store.candidates[0]
     assert 0.1 < weak.score < 0.3
     assert chooser.alone.store.pass_ == (weak if status is Status.SUCCESS else None)
+
+
+@pytest.mark.parametrize(("hold", "status"), [(0.35, Status.SUCCESS), (3.0, Status.FAILURE)])
+def test_a_pass_worth_little_is_better_than_a_ball_that_a_weak_dribbler_keeps(
+    hold: float, status: Status
+) -> None:
+    chooser = Chooser(ChooseKick(patience=1.5), (robot(-3.0, 1.0, number=4),))
+    chooser.alone.store.team.plan.tactics = TacticsSettings(better=10.0)
+    limits = RobotLimits(hold_acceleration=hold)
+    me = robot(-2.0, -1.0, 2.0, number=1, contact=True, limits=limits)
+    for step in range(40):
+        seen = chooser.at(step / 10, me, (KEEPER, robot(-2.2, 1.4, number=3)))
+    assert 0.01 < chooser.alone.store.candidates[0].score < 0.035
+    assert seen is status
 
 
 def test_nobody_is_passed_to_through_an_opponent() -> None:
