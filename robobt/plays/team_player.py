@@ -185,7 +185,7 @@ def let_go() -> Behaviour:
 
 def kick() -> KickToTarget:
     """Kick quickly instead of to the last degree."""
-    return KickToTarget(take=True, pass_tolerance=PASS_TOLERANCE)
+    return KickToTarget(take=True, round_ball=True, pass_tolerance=PASS_TOLERANCE)
 
 
 def take_restart(shoot_at: float, pass_at: float, chips: bool) -> Behaviour:

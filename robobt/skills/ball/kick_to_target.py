@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
+from functools import partial
 from math import atan2, cos, radians, sin
 
 from robobt.motion.dribbling import (
@@ -10,6 +11,7 @@ from robobt.motion.dribbling import (
     dribbling_limits,
     sideways_after_kick,
     turn_to,
+    turn_with_ball,
 )
 from robobt.motion.path_planner import TARGETS, allowed_target, next_waypoint, travel
 from robobt.motion.pilot import roughly
@@ -98,6 +100,7 @@ class KickToTarget(DrivingSkill):
             shot's own tolerance, 1.5 degrees for a pass.
         pass_tolerance: tolerance for passes only [rad]; None takes ``tolerance``.
         take: take a ball right in front of the robot at once instead of driving round it.
+        round_ball: turn round the ball if the dribbler is too weak to swing it round the robot.
         max_turn: turning rate with the ball [rad/s].
         limits: how to drive without the ball; None for the robot's own.
         speed_factor: factor on the top speed.
@@ -117,6 +120,7 @@ class KickToTarget(DrivingSkill):
     tolerance: float | None = None
     pass_tolerance: float | None = None
     take: bool = False
+    round_ball: bool = False
     max_turn: float = 4.0
     goalkeeper: bool = False
     chip: bool = False
@@ -194,7 +198,8 @@ class KickToTarget(DrivingSkill):
 
     def _turn_with_ball(self, order: _Order) -> None:
         heading = direction(self.ball.position, order.target)
-        self.store.command = turn_to(self.me, self.ball, heading, self._carry, self.frame.period)
+        turn = partial(turn_to, ball=self.ball) if self.round_ball else turn_with_ball
+        self.store.command = turn(self.me, heading=heading, limits=self._carry, period=self.frame.period)
 
     def _come_from_behind(self, order: _Order) -> None:
         frame, me, ball = self.frame, self.me, self.ball

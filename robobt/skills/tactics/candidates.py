@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from robobt.motion.arrival import time_to
+from robobt.motion.dribbling import carrying_share
 from robobt.skills.store import Pass, TeamStore
 from robobt.skills.tactics.chances import point_worth, redirect_angle
 from robobt.skills.tactics.lanes import (
@@ -36,6 +37,8 @@ class _Allowed(NamedTuple):
         shortest: least length of a pass along the ground [m].
         area_gap: least distance from the pass's target to the defence areas [m].
         widest: largest angle by which a pass is redirected with one touch [rad].
+        taken: speed at which every receiver takes a pass, however short; 0 where dribblers are strong, whose
+            robots take a slower ball more surely, for they can back off with it [m/s].
     """
 
     least: float
@@ -43,6 +46,7 @@ class _Allowed(NamedTuple):
     shortest: float
     area_gap: float
     widest: float
+    taken: float
 
 
 class _Rated(Protocol):
@@ -117,6 +121,7 @@ def passes(
             tactics.shortest if plan.short is None else tactics.shortest_restart,
             tactics.area_gap if frame.game.in_play else tactics.area_gap_restart,
             0.0 if plan.without == "one_touch" else tactics.widest,
+            min(mate.limits.receives * (1.0 - carrying_share(mate.limits)) for _, mate in rows),
         ),
         plan.numbers,
     )
@@ -151,7 +156,7 @@ def _rate(
     heading: float,
     own_: FloatArray,
     opponents_: FloatArray,
-    allowed_: tuple[float, bool, float, float, float],
+    allowed_: tuple[float, bool, float, float, float, float],
     numbers: FloatArray,
 ) -> FloatArray:
     """Rate passes to points (G, 2) of the robots ``owners``; return the best to each as a :class:`_Rated`.
@@ -192,7 +197,7 @@ def _rate(
                 speed = chip_speed(length, tactics)
                 flight = chip_time(length, tactics)
             else:
-                slow = min(tactics.receive_speed, 0.8 + 0.4 * length)
+                slow = min(tactics.receive_speed, max(allowed.taken, 0.8 + 0.4 * length))
                 arrival = tactics.redirect_speed if kind == _SENT_ON_PASS else slow
                 speed = kick_speed(length, arrival, tactics)
                 flight = flight_time(length, speed, tactics)

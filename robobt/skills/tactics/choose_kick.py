@@ -125,10 +125,11 @@ class ChooseKick(Skill):
         patience = self.patience * min(1.0, me.limits.holds_straight / MAX_ACCELERATION)
         falling = 1.0 - (frame.time - self._since) / patience
         share = max(self.floor, falling)
-        # It soon loses a ball that it keeps, so that a pass worth less is better than none.
-        lowest = self.floor * carrying_share(me.limits)
-        keen = max(lowest, falling)
         pressed = has and any(hypot(r.x - ball.x, r.y - ball.y) < tactics.pressed for r in frame.opponents)
+        # It soon loses a ball that it keeps among opponents, so that a pass worth less is better than none.
+        held = carrying_share(me.limits) if pressed or ball.x < 0.0 else 1.0
+        lowest = self.floor * held
+        keen = max(lowest, falling)
         if pressed:
             share, keen = min(share, 2.0 * self.floor), min(keen, 2.0 * lowest)
         shot = self._best_shot()

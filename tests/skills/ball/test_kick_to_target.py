@@ -101,7 +101,8 @@ def test_a_shot_in_the_run_up_breaks_no_speed_limit_where_a_kick_adds_to_the_rob
 @pytest.mark.parametrize("heading", [3.0, -2.0])
 def test_a_dribbler_too_weak_to_swing_the_ball_turns_round_it(heading: float) -> None:
     ball = (0.0856 * cos(heading), 0.0856 * sin(heading))
-    trial = alone(KickToTarget(target=GOAL), (0.0, 0.0, heading), ball, settings="erforce")
+    kick = KickToTarget(target=GOAL, round_ball=True)
+    trial = alone(kick, (0.0, 0.0, heading), ball, settings="erforce")
     trial.run(1.3)
     assert len(trial.kicks) == 1
     last = trial.frames[-1].ball

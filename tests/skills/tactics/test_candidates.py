@@ -11,7 +11,7 @@ from robobt.skills.tactics.agree import agree
 from robobt.skills.tactics.candidates import passes
 from robobt.skills.tactics_settings import DEFAULT_TACTICS
 from robobt.testing import frame, held, robot
-from robobt.world import DIVISION_B, GameState, RobotState, Team
+from robobt.world import DIVISION_B, GameState, RobotLimits, RobotState, Team
 from robobt.world.game import TeamStatus
 from robobt.world.geometry import Point, distance
 from robobt.world.rules import in_their_defense_area
@@ -122,3 +122,12 @@ def test_a_pass_that_is_to_go_on_with_one_touch_is_faster_and_can_be_done_withou
     )
     assert whole.score > without.score
     assert whole.speed > without.speed + 0.5
+
+
+def test_a_short_pass_is_faster_where_robots_with_weak_dribblers_take_a_fast_ball() -> None:
+    def fastest(taken: float, held: float) -> float:
+        limits = RobotLimits(receive_speed=taken, hold_acceleration=held)
+        return max(one.speed for one in found((robot(0.5, 0.5, number=4, limits=limits),)))
+
+    assert fastest(3.0, 0.35) > 1.2 * fastest(0.5, 0.35)
+    assert fastest(3.0, 3.0) == fastest(0.5, 3.0) == fastest(0.5, 0.35)
