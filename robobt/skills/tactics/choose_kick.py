@@ -121,7 +121,7 @@ class ChooseKick(Skill):
         frame, me, ball, team = self.frame, self.me, self.ball, self.store.team
         old_pass, plan, tactics = self._pass, team.plan, team.plan.tactics
         self._shot = self._pass = None
-        # A robot that can neither carry the ball nor turn with it gains nothing by waiting.
+        # A robot that can hardly brake with the ball gains little by waiting.
         patience = self.patience * min(1.0, me.limits.holds_straight / MAX_ACCELERATION)
         falling = 1.0 - (frame.time - self._since) / patience
         share = max(self.floor, falling)
