@@ -118,7 +118,9 @@ def script(task: ArenaTask) -> Teacher:
     if found is None:
         raise _nobody(task)
     forgetful = found
-    return _Script(lambda observation: forgetful(observation[:, : task.seen_size]))
+    # A script knows nothing of the memory, which tasks with one learner may have.
+    seen = len(task.learners) * task.seen_size
+    return _Script(lambda observation: forgetful(observation[:, :seen]))
 
 
 def skill(task: ArenaTask) -> Teacher:

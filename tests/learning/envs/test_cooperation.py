@@ -10,6 +10,7 @@ from robobt.challenges.handover import JUNIOR_ROW, MAJOR_ROW
 from robobt.learning import TASKS
 from robobt.learning.envs.cooperation.task import CooperationSettings, CooperationTask
 from robobt.learning.envs.starts import places_of, start_parts
+from robobt.learning.training.teachers import script
 from robobt.world.game import OPEN_PLAY, Team
 from robobt.world.state import BallState, Frame, RobotId, RobotState
 
@@ -104,6 +105,12 @@ def test_points_and_goals_are_those_of_the_challenge() -> None:
         goals += int(result.success[~over].sum())
         over |= result.terminated
     assert goals >= 4
+
+
+def test_the_script_decides_for_both_robots_in_an_evaluation() -> None:
+    task = made(3)
+    observation = task.reset(seed=4)
+    assert script(task).act(observation) == pytest.approx(task.script()(observation))
 
 
 @pytest.mark.integration
