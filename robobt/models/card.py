@@ -192,6 +192,7 @@ def action_outputs(action: ActionScaling) -> tuple[OutputEntry, ...]:
         "vy": ("m/s", action.max_speed),
         "omega": ("rad/s", action.max_turn),
         "kick": ("m/s", action.kick_speed),
+        "hold": ("1", 1.0),
     }
     return tuple(
         [OutputEntry(name=name, unit=scales[name][0], scale=scales[name][1]) for name in action.entries]

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from robobt.models.actions import GO_TO_BALL_ACTION, SHOOT_ACTION, ActionScaling, command_of, fill_commands
+from robobt.models.card import action_outputs
 from robobt.world import KickTrigger
 from robobt.world.compiled import numbers_of
 
@@ -39,6 +40,11 @@ def test_a_single_action_stands_for_the_same_command_as_in_a_batch(scaling: Acti
 def test_the_dribbler_turns_where_the_action_holds() -> None:
     held, let_go = filled(np.array([[0.0, 0.0, 0.0, 0.1], [0.0, 0.0, 0.0, 0.0]]), HOLD)
     assert (held[5], let_go[5]) == (1.0, 0.0)
+
+
+@pytest.mark.parametrize("scaling", [GO_TO_BALL_ACTION, SHOOT_ACTION, BOTH, HOLD])
+def test_a_card_has_an_output_for_every_entry(scaling: ActionScaling) -> None:
+    assert tuple(output.name for output in action_outputs(scaling)) == scaling.entries
 
 
 def test_driving_diagonally_is_not_faster() -> None:
