@@ -70,6 +70,12 @@ class CooperationTask(SoccerTask):
     _handover: Handover
     _balls: FloatArray
 
+    def __init__(
+        self, settings: CooperationSettings | None = None, n: int = 1, seed: int | None = None
+    ) -> None:
+        super().__init__(settings, n, seed)
+        self.start_columns = (*self.start_columns, "shot")
+
     @property
     def points(self) -> FloatArray:
         """The points of each arena's try so far, without what broken rules cost, (n,)."""
@@ -78,12 +84,6 @@ class CooperationTask(SoccerTask):
     def _judged_weights(self, weights: SoccerReward) -> SoccerReward:
         # The challenge's class says when the first robot has shot, the second has the ball, and it scores.
         return weights.model_copy(update={"sent": 0.0, "passed": 0.0, "goal": 0.0})
-
-    def __init__(
-        self, settings: CooperationSettings | None = None, n: int = 1, seed: int | None = None
-    ) -> None:
-        super().__init__(settings, n, seed)
-        self.start_columns = (*self.start_columns, "shot")
 
     def _build(self) -> None:
         self._handover = Handover(self.n, self.settings.field)
