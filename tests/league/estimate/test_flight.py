@@ -167,6 +167,6 @@ def test_a_chip_in_flight_may_be_seen_where_it_began_or_as_it_was_before(time: f
 @pytest.mark.parametrize("name", ["default", "grsim"])
 def test_most_chips_are_known_and_land_where_they_are_said_to(name: str) -> None:
     figures = bench_chips(settings_from({"preset": name, "realism": "realistic"}), 30, 30, seed=5, cameras=4)
-    assert figures["recognised"] >= 0.85 * figures["chips"]
+    assert figures["recognised"] >= 0.8 * figures["chips"]
     assert figures["landing_error"]["0.5"]["p90"] < 0.2
     assert figures["taken_for_chips"] == 0

@@ -56,7 +56,7 @@ def _rows(seen: Seen) -> FloatArray:
     return np.column_stack(columns)
 
 
-BALL_PLACEMENT = own_observation(
+BALL_TO_SPOT = own_observation(
     "ball_placement",
     1,
     *entries("ball_x ball_y", "m", "far", 0.5),
@@ -109,7 +109,7 @@ class BallPlacementTask(ArenaTask):
 
     Settings = BallPlacementSettings
     settings: BallPlacementSettings
-    observation = BALL_PLACEMENT
+    observation = BALL_TO_SPOT
     start_columns = (*START_COLUMNS, "spot_x", "spot_y")
     _balls: PlacedBalls
     _spots: FloatArray
