@@ -251,7 +251,8 @@ def _repeated(row: Row, workers: int) -> tuple[bool | None, str | None]:
 def _print(rows: list[Row], repeated: Sequence[bool | None] | None = None) -> None:
     shown = table("challenge", "entrant", "score", "95 % interval", "trials", "conditions", "hash", "commit")
     for index, row in enumerate(rows):
-        between = "-" if row.low is None or row.high is None else f"{row.low:.1f} to {row.high:.1f}"
+        same = row.low is None or row.high is None or row.low == row.high
+        between = "-" if same else f"{row.low:.1f} to {row.high:.1f}"
         trace = row.trace[:8]
         if repeated is not None:
             trace += {True: " equal", False: " differs", None: " not played"}[repeated[index]]

@@ -93,8 +93,9 @@ class FittedTable(Table):
 
 _BETWEEN = 2
 _NO_LINES: dict[str, Any] = {"box": None, "padding": (0, _BETWEEN, 0, 0), "pad_edge": False}
-_LINE, _WORD, _PART = re.compile(r"[^\n]+"), re.compile(r"\S+"), re.compile(r"[^\s_:,/|=]*[_:,/|=]*")
-"""What stays on one line: all of a line, words, and parts of names."""
+_LINE, _WORD = re.compile(r"[^\n]+"), re.compile(r"\S+")
+_PART = re.compile(r"(?:[^\s_:,/|=.]|\.(?![a-z]))*(?:[_:,/|=]|\.(?=[a-z]))*")
+"""What stays on one line: all of a line, words, and parts of names. A number is not broken at its point."""
 
 
 def _text(console: Console, cell: object) -> Text:

@@ -125,3 +125,10 @@ def test_a_narrow_table_is_broken_between_words_and_then_parts_of_names(width: i
 def test_a_table_for_which_there_is_no_room_at_all_is_printed_whole() -> None:
     printed = "".join("".join(lines_of(listed(), 20)).split())
     assert all(letter in printed for letter in "modelobservationresults")
+
+
+def test_a_setting_is_broken_at_its_points_but_a_number_is_not() -> None:
+    shown = FittedTable("name", "conditions")
+    shown.add_row("cooperation", "simulator.realism.command_delay=0.065")
+    words = "\n".join(lines_of(shown, 24)).split()
+    assert words == ["name", "conditions", "cooperation", "simulator.", "realism.", "command_", "delay=0.065"]
