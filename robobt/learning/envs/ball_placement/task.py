@@ -104,7 +104,7 @@ class BallPlacementTask(ArenaTask):
 
     One robot is alone on the field; the challenge lets six play. An episode starts with the ball at rest, up
     to 0.15 m beyond the lines, and ends in success when the ball is placed by the class that the challenge's
-    judge asks: at rest within 0.15 m of the spot, the robot 0.05 m away from it, not before 2 s.
+    judge asks: at rest within 0.15 m of the spot, the robot 0.05 m away from it, 2 s or more after the start.
     """
 
     Settings = BallPlacementSettings

@@ -62,7 +62,8 @@ class CooperationSettings(SoccerSettings):
 class CooperationTask(SoccerTask):
     """Score a goal by two robots that each touch the ball, as in the cooperation challenge of 2026.
 
-    :class:`CooperationSettings` is the specification. Both robots are robobt's and have one policy.
+    The first robot shoots, then the second shoots into the empty goal. Both are robobt's and have one policy;
+    each stands still while it is the other's turn. :class:`CooperationSettings` is the specification.
     """
 
     Settings = CooperationSettings

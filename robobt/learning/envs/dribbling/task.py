@@ -143,9 +143,9 @@ class DribblingTask(ArenaTask):
     """Carry the ball through the next gates of the dribbling challenge of 2022, touching none of its robots.
 
     An episode starts with the ball in the dribbler, before any of the gates. It
-    ends in success after ``gates`` more, counted by the class that the challenge's judge asks, and without at
-    a touch or when the ball leaves the field. ``first: [0, 0]``, ``gates: 9`` is the whole challenge without
-    getting the ball at first, with ``time_limit: 4000`` for its 120 s.
+    succeeds after ``gates`` more gates, counted by the class that the challenge's judge asks, and fails at a
+    touch or when the ball leaves the field. With ``first: [0, 0]``, ``gates: 9`` and ``time_limit: 4000``
+    (120 s) it is the whole challenge, except that the robot starts with the ball.
     """
 
     Settings = DribblingSettings
