@@ -106,12 +106,22 @@ def nobody_decides(logged: LoggedMatch, at: float, team: Team | None) -> WhatIfE
     then = ""
     if later:
         tick, robot = min(later, key=lambda moment: moment[0])
-        # Rounded down, to the first tick after which is this one.
-        then = f"{robot} has it at {floor(100.0 * logged.recording.times[tick]) / 100.0:.2f} s; "
+        then = f"{robot} has it at {_short_time(logged, tick)} s; "
     return WhatIfError(
         f"{logged.recording.path}: {who} has the ball at {at:g} s, so no other decision can be tried; "
         f"{then}--scan looks for moments that count, --blue or --yellow lets a team play otherwise"
     )
+
+
+def _short_time(logged: LoggedMatch, tick: int) -> str:
+    """Return a time at which the log is at this tick [s], with two digits or as many more as it takes."""
+    times = logged.recording.times
+    time = float(times[tick])
+    for digits in range(2, 6):
+        for text in (f"{floor(time * 10**digits) / 10**digits:.{digits}f}", f"{time:.{digits}f}"):
+            if times[0] <= float(text) <= times[-1] and logged.tick(float(text)) == tick:
+                return text
+    return str(time)
 
 
 def scan(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
+from dataclasses import replace
 from itertools import pairwise
 from statistics import fmean
 from typing import Any
@@ -12,7 +13,7 @@ import pytest
 
 from robobt.what_if import Branch, Branches, LoggedMatch, decisions_of, scan
 from robobt.what_if.compare import MeanEstimate
-from robobt.what_if.scan import moments_of
+from robobt.what_if.scan import _short_time, moments_of
 from robobt.world import Team
 from robobt.world.rules import owner
 
@@ -127,3 +128,14 @@ def test_a_real_search_repeats(logged: LoggedMatch) -> None:
     assert first == searched(branches, 1, **options)
     assert first[0].changed.trials == 2
     branches.close()
+
+
+@pytest.mark.parametrize("period", [0.01, 0.005, 1 / 60, 0.0001])
+def test_the_moment_that_is_named_is_one_at_which_the_robot_has_the_ball(
+    logged: LoggedMatch, period: float
+) -> None:
+    times = np.array([period * tick for tick in range(len(logged.recording))])
+    closer = replace(logged.recording, times=times)
+    other = replace(logged, recording=closer)
+    for tick in range(0, len(closer), 7):
+        assert other.tick(float(_short_time(other, tick))) == tick
