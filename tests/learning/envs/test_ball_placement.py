@@ -101,3 +101,27 @@ def test_the_script_places_nearly_every_ball() -> None:
         if task.ended is not None:
             succeeded += task.ended.success.tolist()
     assert np.mean(succeeded) > 0.9
+
+
+@pytest.mark.parametrize("field", ["hardware_challenge", {"width": 5.0}])
+def test_the_challenges_scenarios_need_its_field(field: object) -> None:
+    with pytest.raises(ValueError, match="division B"):
+        made(1, 4, field=field)
+    robots, balls, _ = start_parts(
+        made(1, 4, field="hardware_challenge", published=0.0).sample_starts(1, 50), 1
+    )
+    assert max(np.abs(robots["x"]).max(), np.abs(balls["x"]).max()) <= 3.15
+
+
+def test_a_ball_in_a_corner_has_a_spot_that_is_near_enough() -> None:
+    with pytest.raises(ValueError, match="longest"):
+        made(1, 4, longest=0.5)
+    task = made(1, 4, longest=0.6)
+    lines = np.array([task.settings.field.half_length, task.settings.field.half_width])
+    spot = task._spot(np.random.default_rng(1), lines + 0.15, lines - 0.2)
+    assert np.linalg.norm(lines + 0.15 - spot) < 0.6
+
+
+def test_an_action_that_does_not_switch_the_dribbler_is_refused() -> None:
+    with pytest.raises(ValueError, match="drive_and_hold"):
+        made(1, 4, action={"kind": "drive", "max_speed": 1.5, "max_turn": 3.0})

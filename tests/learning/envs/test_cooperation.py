@@ -123,3 +123,17 @@ def test_the_script_scores() -> None:
         if task.ended is not None:
             succeeded += task.ended.success.tolist()
     assert np.mean(succeeded) > 0.8
+
+
+@pytest.mark.parametrize(
+    "teams",
+    [
+        {"blue": ["learner"]},
+        {"blue": ["learner"] * 3},
+        {"blue": ["challenge", "learner"]},
+        {"yellow": ["goalkeeper"]},
+    ],
+)
+def test_other_teams_than_the_challenges_pair_are_refused(teams: dict[str, list[str]]) -> None:
+    with pytest.raises(ValueError, match="two learners"):
+        CooperationSettings.model_validate(teams)

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from functools import partial
 from math import pi
+from typing import Self
 
 import numpy as np
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from robobt.challenges.ball_placement import PLACEMENT_TIME, PLACEMENTS
 from robobt.challenges.placing import CLEAR_DISTANCE, PlacedBalls
@@ -19,6 +20,7 @@ from robobt.learning.envs.task import BoolArray, FloatArray, IntArray
 from robobt.learning.envs.task_parts import Policy
 from robobt.learning.envs.tick import Tick
 from robobt.models.actions import ActionScaling
+from robobt.world.field import DIVISION_B
 from robobt.world.observation import Seen, entries, own_observation
 from robobt.world.rules import PLACED_DISTANCE
 
@@ -95,8 +97,19 @@ class BallPlacementSettings(TaskSettings):
     published: float = Field(
         0.25, ge=0, le=1, description="share of starts with ball and spot of one of the challenge's scenarios"
     )
-    longest: float = Field(12.0, gt=0.2, le=20, description="longest way of the other starts' balls [m]")
+    longest: float = Field(12.0, ge=0.6, le=20, description="longest way of the other starts' balls [m]")
     reward: PlacementReward = PlacementReward()
+
+    @model_validator(mode="after")
+    def _sensible(self) -> Self:
+        if self.action.kind != "drive_and_hold":
+            raise ValueError("action: Ball-Placement needs drive_and_hold actions")
+        small = self.field.length < DIVISION_B.length or self.field.width < DIVISION_B.width
+        if self.published > 0.0 and small:
+            raise ValueError(
+                "published: the challenge's scenarios need the field of division B; 0 draws none"
+            )
+        return self
 
 
 class BallPlacementTask(ArenaTask):

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from math import pi
+from typing import Self
 
 import numpy as np
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from robobt.challenges.cooperation import BALL_START, FAST_BALL, PLACES
 from robobt.challenges.handover import JUNIOR_ROW, MAJOR_ROW, Handover
@@ -57,6 +58,12 @@ class CooperationSettings(SoccerSettings):
     )
     rules: SoccerRules = SoccerRules(held_by=None, dribbling=1.0, let_go=0.9)
     reward: SoccerReward = SoccerReward(fault=0.5, approach=0.1, sent=1.0, passed=2.0, shot=2.0, shared=1.0)
+
+    @model_validator(mode="after")
+    def _two_learners(self) -> Self:
+        if self.blue != (LEARNER, LEARNER) or self.yellow:
+            raise ValueError("blue, yellow: the challenge is for two learners of blue alone")
+        return self
 
 
 class CooperationTask(SoccerTask):
