@@ -52,7 +52,7 @@ class RobotLimits(Settings):
         None,
         gt=0,
         le=100,
-        description="that acceleration while it does not turn; None: hold_acceleration [m/s^2]",
+        description="that acceleration while it does not turn, if it is larger; None: no larger [m/s^2]",
     )
     carry_aside: float | None = Field(
         None, gt=0, le=10, description="speed sideways at which it keeps it; None: any [m/s]"
@@ -115,7 +115,7 @@ class RobotLimits(Settings):
     @property
     def holds_straight(self) -> float:
         """Acceleration at which a robot that does not turn keeps the ball [m/s^2]."""
-        return self.hold_acceleration if self.hold_straight is None else self.hold_straight
+        return max(self.hold_acceleration, self.hold_straight or 0.0)
 
     @property
     def angular_braking(self) -> float:

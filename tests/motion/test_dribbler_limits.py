@@ -14,6 +14,7 @@ from robobt.learning.envs.soccer.suite import SUITE
 from robobt.learning.envs.soccer.task import SoccerTask
 from robobt.models.actions import ActionScaling
 from robobt.models.card import action_outputs
+from robobt.sim.settings import preset, settings_from
 from robobt.skills import GoToBall, Score, Shoot
 from robobt.testing import frame, held, robot
 from robobt.world import RobotLimits
@@ -129,3 +130,10 @@ def test_an_environment_carries_it_as_the_policy_does() -> None:
     assert task.arenas.contact[0].tolist() == [True, False]
     assert task.arenas.robots[0, 0, 4] == pytest.approx(1.1, abs=0.02)
     assert task.arenas.robots[0, 1, 4] > 1.5
+
+
+def test_a_robot_that_does_not_turn_holds_the_ball_no_less_than_one_that_does() -> None:
+    weak = preset("erforce").limits
+    assert weak.holds_straight > weak.hold_acceleration
+    strong = settings_from({"preset": "erforce", "limits": {"hold_acceleration": 3.0}}).limits
+    assert strong.holds_straight == 3.0
