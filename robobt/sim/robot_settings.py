@@ -52,7 +52,7 @@ class WheelSettings(Settings):
     inertia: float = Field(0.0145, gt=0.0005, le=1, description="of it about the vertical [kg m^2]")
     wheel_mass: float = Field(0.2, gt=0.001, le=2, description="of one wheel [kg]")
     centre: float = Field(-0.002, ge=-0.05, le=0.05, description="centre of mass, ahead of the centre [m]")
-    height: float = Field(0.074, ge=0, le=0.2, description="centre of mass above the ground [m]")
+    height: float = Field(0.074, ge=0.001, le=0.2, description="centre of mass above the ground [m]")
     torque: float = Field(0.17, gt=0, le=10, description="most that a wheel's motor gives [N m]")
     grip_ahead: float = Field(
         0.26,

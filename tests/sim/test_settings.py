@@ -136,6 +136,7 @@ def test_an_unknown_realism_lists_those_there_are() -> None:
     [
         ({"kicker": {"max_sped": 3}}, "max_sped"),
         ({"ball": {"mass": -1}}, "ball.mass"),
+        ({"preset": "grsim", "wheels": {"height": 0}}, "wheels.height"),
         ({"ball": 3}, "ball"),
         ({"sub_step": float("nan")}, "sub_step"),
         ({"gravity": 9.81}, "gravity"),
