@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from functools import cached_property, partialmethod
 from types import FunctionType
 
 from py_trees import composites, decorators
@@ -37,14 +38,24 @@ def _methods(cls: type) -> list[str] | None:
         if _package(base) not in _OWN_PACKAGES:
             continue
         for name, value in vars(base).items():
-            if not callable(value) or isinstance(value, type):
+            function = _function(value)
+            if not callable(function) or isinstance(function, type):
                 continue
             # Tests and users put functions of their own in the place of methods.
-            if _package(getattr(value, "__func__", value)) not in _OWN_PACKAGES:
+            if _package(function) not in _OWN_PACKAGES:
                 return None
             if isinstance(value, FunctionType) and not name.startswith("__"):
                 names.add(name)
     return sorted(names)
+
+
+def _function(value: object) -> object:
+    """Return the function behind a property or method of a class, or what is no such thing itself."""
+    if isinstance(value, property):
+        return value.fget
+    if isinstance(value, partialmethod | cached_property):
+        return value.func
+    return getattr(value, "__func__", value)
 
 
 def _is_own(node: Behaviour, methods: list[str] | None) -> bool:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import partialmethod
+
 import pytest
 from py_trees.common import ParallelPolicy
 
@@ -34,6 +36,15 @@ class Broken(Leaf[list[str]]):
         raise ZeroDivisionError("no")
 
 
+class Partial(Scripted):
+    """Its start is a method with an argument given."""
+
+    def note(self, word: str) -> None:
+        self.store.append(word)
+
+    on_start = partialmethod(note, "noted")
+
+
 S, F, R = Status.SUCCESS, Status.FAILURE, Status.RUNNING
 
 
@@ -42,6 +53,12 @@ def test_a_leaf_starts_runs_and_ends() -> None:
     runner = TreeRunner(Scripted("a", R, R, S), log)
     assert [runner.tick() for _ in range(3)] == [R, R, S]
     assert log == ["a start", "a tick", "a tick", "a tick", "a success"]
+
+
+def test_a_method_may_be_another_with_an_argument_given() -> None:
+    log: list[str] = []
+    assert TreeRunner(Partial("a", S), log).tick() is S
+    assert log == ["noted", "a tick", "a success"]
 
 
 def test_a_running_leaf_is_interrupted_after_the_new_branch_has_ticked() -> None:

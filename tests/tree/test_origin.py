@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import cached_property, partialmethod
 from typing import Any
 
 import pytest
@@ -73,6 +74,13 @@ def _with_method(node: Behaviour, name: str) -> Behaviour:
 )
 def test_what_a_user_has_written_is_found(make: Callable[..., Any]) -> None:
     assert not _own(make())
+
+
+@pytest.mark.parametrize("kind", [property, cached_property, partialmethod])
+def test_a_users_function_in_a_property_is_found(kind: type, monkeypatch: pytest.MonkeyPatch) -> None:
+    assert _own(GoToBall())
+    monkeypatch.setattr(Skill, "ball", kind(lambda node: node.frame.ball))
+    assert not _own(GoToBall())
 
 
 def test_a_name_that_a_user_has_registered_is_found(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -146,7 +146,10 @@ def has_method_of(cls: type, node: Behaviour, method: str) -> bool:
     # Not looked up in the node's __dict__: asking for that makes CPython 3.11 build it, and
     # every attribute of the node is slower to reach from then on.
     found = getattr(node, method)
-    return getattr(found, "__self__", None) is node and found.__func__ is getattr(cls, method)
+    if getattr(found, "__self__", None) is not node:
+        return False
+    # One made by functools.partialmethod is bound to the node, too, but is no method.
+    return getattr(found, "__func__", None) is getattr(cls, method)
 
 
 def not_a_status(node: Behaviour, status: object) -> Status:
