@@ -182,6 +182,6 @@ def _show_robots(team: Team, robots: Sequence[RobotEstimate]) -> None:
     listed = table(team.value, *[str(robot.robot.number) for robot in robots])
     for name, unit in UNITS.items():
         figures = [robot.figures[name] for robot in robots]
-        values = [short(it.value, digits=3) if it.seen else "-" for it in figures]
+        values = [short(round(it.value, 4), digits=3) if it.seen else "-" for it in figures]
         listed.add_row(f"{name}, {unit}" if unit else name, *values)
     console.print(listed)

@@ -49,8 +49,8 @@ class Estimate:
 
 
 def short(value: float, digits: int = 4) -> str:
-    """Return a value with few digits; less than half of 0.0001 is 0, which has no sign."""
-    return f"{round(value, 4) + 0.0:.{digits}g}"
+    """Return a value with few digits; less than half of 0.000001 is 0, which has no sign."""
+    return f"{round(value, 6) + 0.0:.{digits}g}"
 
 
 def unseen(count: int = 0, unit: str = "") -> Estimate:

@@ -91,6 +91,12 @@ def test_what_rounding_leaves_of_zero_reads_as_zero() -> None:
     assert Estimate(1.4e-15, -2e-15, 0.012, 40, True, "m").text() == "0 (0 to 0.012) m"
 
 
+def test_a_cameras_noise_is_told_to_a_thousandth_of_a_millimetre() -> None:
+    # ER-Force's level "friendly" has 0.4 mm.
+    noise = Estimate(0.000376, 0.000351, 0.000402, 900, True, "m")
+    assert noise.text() == "0.000376 (0.000351 to 0.000402) m"
+
+
 @pytest.mark.parametrize(
     ("name", "truth"), [("max_speed", 2.2), ("acceleration", 2.6), ("side_acceleration", 2.2)]
 )
