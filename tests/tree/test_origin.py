@@ -26,6 +26,11 @@ from robobt.tree.walk import preorder
 from robobt.world.command import RobotCommand
 
 
+@pytest.fixture(autouse=True)
+def nothing_registered_by_other_tests(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(Registry, "foreign", set())
+
+
 class Theirs(Skill):
     def on_running(self) -> Status:
         return self.run()
@@ -40,9 +45,7 @@ def _own(tree: Behaviour) -> bool:
 
 
 @pytest.mark.parametrize("play", ["team_player", "team_goalkeeper", "attack_main", "goalkeeper"])
-def test_plays_that_ship_run_only_own_code(play: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    # Other tests have registered things of their own.
-    monkeypatch.setattr(Registry, "foreign", set())
+def test_plays_that_ship_run_only_own_code(play: str) -> None:
     assert _own(PLAYS[play]())
 
 
@@ -83,8 +86,7 @@ def test_a_users_function_in_a_property_is_found(kind: type, monkeypatch: pytest
     assert not _own(GoToBall())
 
 
-def test_a_name_that_a_user_has_registered_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(Registry, "foreign", set())
+def test_a_name_that_a_user_has_registered_is_found() -> None:
     undo = RATERS.undo_point()
     try:
         assert _own(SelectShot(rater="open_angle"))
@@ -107,8 +109,7 @@ def test_a_method_that_a_user_has_put_into_a_class_is_found(monkeypatch: pytest.
     assert not _own(Stop())
 
 
-def test_a_name_in_the_place_of_a_default_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(Registry, "foreign", set())
+def test_a_name_in_the_place_of_a_default_is_found() -> None:
     theirs = type("TheirRater", (OpenAngle,), {"__module__": __name__})
     with within(Namespace()):
         RATERS.register(str(SelectShot().parameters()["rater"]))(theirs)
