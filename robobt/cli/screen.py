@@ -43,8 +43,9 @@ for _name in ("stdout", "stderr"):
         setattr(sys, _name, Path(os.devnull).open("w", encoding="utf-8"))  # noqa: SIM115
 
 drop_odd_sizes(os.environ)
-console = _Console(highlight=False)
-errors = _Console(stderr=True, highlight=False)
+# No emoji: a play of a user's file is called "my_team.py:boom", and rich draws what ":boom:" names.
+console = _Console(highlight=False, emoji=False)
+errors = _Console(stderr=True, highlight=False, emoji=False)
 
 
 class FittedTable(Table):

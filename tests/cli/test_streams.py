@@ -10,7 +10,7 @@ from io import StringIO
 import pytest
 from rich.console import Console
 
-from robobt.cli.screen import FittedTable, drop_odd_sizes
+from robobt.cli.screen import FittedTable, console, drop_odd_sizes, errors
 from robobt.cli.shown import scenarios
 from tests.waiting import LIMIT
 
@@ -102,6 +102,15 @@ def listed() -> FittedTable:
     table.columns[0].no_wrap = True
     table.add_row("go_to_ball_ppo", "go_to_ball_among v2", "success 0.9, time 3.2 s")
     return table
+
+
+@pytest.mark.parametrize("printed", ["my_team.py:boom: no goals", "[bold]my_team.py:boom:[/bold]"])
+def test_a_play_of_a_file_is_no_picture(printed: str, capsys: pytest.CaptureFixture[str]) -> None:
+    console.print(printed)
+    errors.print(printed)
+    said = capsys.readouterr()
+    assert "my_team.py:boom:" in said.out
+    assert "my_team.py:boom:" in said.err
 
 
 def test_a_table_that_fits_is_printed_as_it_is() -> None:
