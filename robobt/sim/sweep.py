@@ -57,7 +57,7 @@ def _meets_box(x: float, y: float, dx: float, dy: float, box: WallBox, radius: f
     return first
 
 
-@compiled_lean
+@compiled_merged
 def _meets_robot(x: float, y: float, dx: float, dy: float, p: Parameters) -> float:
     """Return when in (0, 1) the moving ball first meets a robot, in the robot's frame, 1 if not."""
     radius, round_, face, inner = BALL_RADIUS, ROBOT_RADIUS, p.front, p.half_opening

@@ -147,7 +147,7 @@ def chip_time(length: float, tactics: AppliedTactics) -> float:
     return float(tactics.chip_rolls * sqrt(length))
 
 
-@compiled
+@compiled_merged
 def chip_chance(
     ox: float,
     oy: float,
