@@ -212,13 +212,9 @@ def observations() -> str:
         ]
         parts.append("")
     parts.append("## Environments\n\nHow each is used: [training environments](../environments.md).\n")
-    parts += [f"::: {kind.__module__}.{kind.__qualname__}\n" for kind in _environments(envs)]
+    specified = envs.GoToBallTask, envs.GoToBallAmongRobotsTask, envs.ShootTask, envs.ScoreOnGoalkeeperTask
+    parts += [f"::: {kind.__module__}.{kind.__qualname__}\n" for kind in specified]
     return "\n".join(parts)
-
-
-def _environments(envs: Any) -> list[type]:
-    kinds = [getattr(envs, name) for name in dir(envs)]
-    return [kind for kind in kinds if inspect.isclass(kind) and kind.__name__.endswith("Env")]
 
 
 def plays() -> str:

@@ -22,7 +22,7 @@ _SHIPPED_TASKS = {
     "go_to_ball": "go_to_ball.task:GoToBallTask",
     "shoot": "shoot.task:ShootTask",
     "score_on_goalkeeper": "score_on_goalkeeper.task:ScoreOnGoalkeeperTask",
-    "go_to_ball_among_robots": "go_to_ball.task:GoToBallAmongRobotsTask",
+    "go_to_ball_among_robots": "go_to_ball.among_robots:GoToBallAmongRobotsTask",
     "soccer": "soccer.task:SoccerTask",
     "score_on_goalkeeper_and_defenders": "soccer.suite:ScoreOnGoalkeeperAndDefenders",
     "score_on_goalkeeper_and_two_defenders": "soccer.suite:ScoreOnGoalkeeperAndTwoDefenders",

@@ -6,8 +6,7 @@ A learner steps many arenas at once (:class:`ArenaTask`); Gymnasium's interface 
 from robobt.learning.envs.arena_task import ArenaTask as ArenaTask
 from robobt.learning.envs.episodes import straight_line_time as straight_line_time
 from robobt.learning.envs.evaluation import run_starts as run_starts
-from robobt.learning.envs.go_to_ball.among_robots import GoToBallAmongRobotsEnv as GoToBallAmongRobotsEnv
-from robobt.learning.envs.go_to_ball.env import GoToBallEnv as GoToBallEnv
+from robobt.learning.envs.go_to_ball.among_robots import GoToBallAmongRobotsTask as GoToBallAmongRobotsTask
 from robobt.learning.envs.go_to_ball.settings import (
     GoToBallAmongRobotsSettings as GoToBallAmongRobotsSettings,
 )
@@ -15,14 +14,12 @@ from robobt.learning.envs.go_to_ball.settings import GoToBallSettings as GoToBal
 from robobt.learning.envs.go_to_ball.task import GoToBallTask as GoToBallTask
 from robobt.learning.envs.make import find_task as find_task
 from robobt.learning.envs.make import make_task as make_task
-from robobt.learning.envs.score_on_goalkeeper.env import ScoreOnGoalkeeperEnv as ScoreOnGoalkeeperEnv
 from robobt.learning.envs.score_on_goalkeeper.settings import (
     ScoreOnGoalkeeperSettings as ScoreOnGoalkeeperSettings,
 )
 from robobt.learning.envs.score_on_goalkeeper.task import ScoreOnGoalkeeperTask as ScoreOnGoalkeeperTask
 from robobt.learning.envs.settings import HARDWARE_CHALLENGE as HARDWARE_CHALLENGE
 from robobt.learning.envs.settings import TaskSettings as TaskSettings
-from robobt.learning.envs.shoot.env import ShootTowardsGoalEnv as ShootTowardsGoalEnv
 from robobt.learning.envs.shoot.rewards import SHOOT_REWARDS as SHOOT_REWARDS
 from robobt.learning.envs.shoot.rewards import ShootReward as ShootReward
 from robobt.learning.envs.shoot.settings import ShootSettings as ShootSettings

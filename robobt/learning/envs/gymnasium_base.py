@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Mapping, Sequence
 from functools import cache
-from typing import Any, ClassVar
+from typing import Any
 
 import gymnasium
 import numpy as np
@@ -53,14 +53,8 @@ def settings_for(
 
 
 class _OverArenas:
-    """The common part of both interfaces.
+    """The common part of both interfaces; ``task`` are the task's arenas."""
 
-    Attributes:
-        task_name: name of the task, in classes for one task only.
-        task: the task's arenas.
-    """
-
-    task_name: ClassVar[str] = ""
     task: ArenaTask | PerRobot
     _begun = False
 
@@ -125,9 +119,9 @@ class TaskEnv(_OverArenas, gymnasium.Env[Observation, Action]):
     mean. :class:`~robobt.learning.envs.soccer.parallel.SoccerParallelEnv` has an agent for each learner.
 
     Args:
+        task: name of the task.
         settings: the task's settings, or a mapping of their fields, as from a YAML file.
         render_mode: None or "rgb_array".
-        task: name of the task, unless the class is for one task only.
 
     Raises:
         KeyError: there is no such task.
@@ -138,11 +132,11 @@ class TaskEnv(_OverArenas, gymnasium.Env[Observation, Action]):
 
     def __init__(
         self,
+        task: str,
         settings: TaskSettings | Mapping[str, object] | None = None,
         render_mode: str | None = None,
-        task: str = "",
     ) -> None:
-        self.task = make_task(settings_for(task or self.task_name, settings, render_mode), 1)
+        self.task = make_task(settings_for(task, settings, render_mode), 1)
         self.render_mode = render_mode
         one, count = self.task.space, len(self.task.learners)
         self.observation_space = Box(np.tile(one.low, count), np.tile(one.high, count), dtype=np.float32)
@@ -225,10 +219,10 @@ class TaskVectorEnv(_OverArenas, VectorEnv[Observation, Action, Any]):
     each has its own reward. Otherwise it is like :class:`TaskEnv`.
 
     Args:
+        task: name of the task.
         num_envs: number of learners in all arenas, a multiple of an arena's learners.
         settings: as for :class:`TaskEnv`.
         render_mode: None or "rgb_array", one picture per arena.
-        task: as for :class:`TaskEnv`.
 
     Raises:
         KeyError: there is no such task.
@@ -243,12 +237,12 @@ class TaskVectorEnv(_OverArenas, VectorEnv[Observation, Action, Any]):
 
     def __init__(
         self,
+        task: str,
         num_envs: int = 1,
         settings: TaskSettings | Mapping[str, object] | None = None,
         render_mode: str | None = None,
-        task: str = "",
     ) -> None:
-        own = settings_for(task or self.task_name, settings, render_mode)
+        own = settings_for(task, settings, render_mode)
         if num_envs % learners_of(own):
             raise ValueError(
                 f"num_envs must be a multiple of the arena's {learners_of(own)} learners, not {num_envs}"

@@ -13,7 +13,7 @@ from gymnasium.utils.env_checker import check_env
 from gymnasium.vector import AutoresetMode
 
 import robobt.learning  # noqa: F401
-from robobt.learning.envs import GoToBallEnv, ShootTowardsGoalEnv
+from robobt.learning.envs.gymnasium_base import TaskEnv
 from robobt.learning.envs.scripted import straight_drive
 
 IDS = pytest.mark.parametrize(
@@ -193,14 +193,14 @@ def test_every_arena_of_a_vector_has_its_picture() -> None:
 
 def test_misuse_is_refused() -> None:
     with pytest.raises(gymnasium.error.ResetNeeded):
-        GoToBallEnv().step(np.zeros(3, dtype=np.float32))
+        TaskEnv("go_to_ball").step(np.zeros(3, dtype=np.float32))
     with pytest.raises(gymnasium.error.ResetNeeded):
-        GoToBallEnv(render_mode="rgb_array").render()
+        TaskEnv("go_to_ball", render_mode="rgb_array").render()
     with pytest.raises(ValueError, match="'human'"):
-        ShootTowardsGoalEnv(render_mode="human")
+        TaskEnv("shoot", render_mode="human")
     with pytest.raises(ValueError, match="no option 'wind'"):
-        GoToBallEnv().reset(options={"wind": 1})
-    env = GoToBallEnv()
+        TaskEnv("go_to_ball").reset(options={"wind": 1})
+    env = TaskEnv("go_to_ball")
     env.reset(seed=0)
     with pytest.raises(ValueError, match="not finite"):
         env.step(np.full(3, np.nan, dtype=np.float32))

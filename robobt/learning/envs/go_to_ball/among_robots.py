@@ -1,14 +1,15 @@
-"""The specification of Go-To-Ball among moving robots, for Gymnasium."""
+"""Go-To-Ball among moving robots."""
 
 from __future__ import annotations
 
-from robobt.learning.envs.gymnasium_base import TaskEnv, TaskVectorEnv
+from robobt.learning.envs.go_to_ball.settings import GoToBallAmongRobotsSettings
+from robobt.learning.envs.go_to_ball.task import GoToBallTask
 
 
-class GoToBallAmongRobotsEnv(TaskEnv):
-    """Go-To-Ball among robots: drive to the ball without touching another robot.
+class GoToBallAmongRobotsTask(GoToBallTask):
+    """Drive to the ball among other robots.
 
-    :class:`~robobt.learning.envs.GoToBallEnv` with five other robots. The values below are the defaults of
+    :class:`~robobt.learning.envs.GoToBallTask` with five other robots. The values below are the defaults of
     :class:`~robobt.learning.envs.GoToBallAmongRobotsSettings`, where all of them can be changed.
 
     One step is a decision that holds for two control periods of 30 ms, each of 4 physics steps.
@@ -52,17 +53,6 @@ class GoToBallAmongRobotsEnv(TaskEnv):
 
     **End**: terminated within 0.2 m of the ball, which is success; terminated by a touch, two centres within
     0.185 m; truncated after 330 periods (9.9 s).
-
-    Args:
-        settings: a :class:`~robobt.learning.envs.GoToBallAmongRobotsSettings` or a mapping of its fields, as
-            from a YAML file.
-        render_mode: None or "rgb_array".
     """  # noqa: E501 - a table's row is a line
 
-    task_name = "go_to_ball_among_robots"
-
-
-class GoToBallAmongRobotsVectorEnv(TaskVectorEnv):
-    """Many arenas of :class:`GoToBallAmongRobotsEnv`, which specifies observation, reward and ends."""
-
-    task_name = "go_to_ball_among_robots"
+    Settings = GoToBallAmongRobotsSettings
