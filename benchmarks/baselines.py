@@ -37,12 +37,12 @@ from robobt.learning.envs import find_task, make_task
 from robobt.learning.envs.soccer.settings import SoccerSettings
 from robobt.learning.envs.soccer.suite import against
 from robobt.learning.tasks import environment_id
-from robobt.learning.training.clock import RunClock
 from robobt.learning.training.export_run import held_out
 from robobt.learning.training.off_policy import OffPolicyRun
 from robobt.learning.training.on_policy import OnPolicyRun
 from robobt.learning.training.preset_files import merged, read_preset
 from robobt.learning.training.problems import Problem, problem_of
+from robobt.learning.training.progress import RunClock
 from robobt.learning.training.run import TrainingRun
 from robobt.learning.training.run_folder import RunFolder
 from robobt.learning.training.settings import settings_of

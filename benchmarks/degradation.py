@@ -12,8 +12,8 @@ from robobt.cli.common import MAX_SEED, Json, console, errors, print_json, table
 from robobt.config.errors import short_repr, unknown_name
 from robobt.learning.agents.networks import one_thread
 from robobt.learning.envs import ShootSettings, TaskSettings, make_task
-from robobt.learning.training.evaluation import Evaluation
 from robobt.learning.training.fresh_starts import JudgingError, judge, trained_policy
+from robobt.learning.training.results import Evaluation
 from robobt.models.card import Measured
 from robobt.models.export import add_figures, read_amendable
 from robobt.models.find import find_model

@@ -20,9 +20,8 @@ from robobt.cli import Json, print_json, say
 from robobt.cli.common import Bundled, errors
 from robobt.config.systems import need_posix
 from robobt.league.connection import Connection
-from robobt.league.serve.served_field import ServedField
+from robobt.league.serve.served_field import ServedField, served_scenario
 from robobt.league.serve.server import SimServer
-from robobt.league.serve.serving import served_scenario
 from robobt.league.wire.endpoints import VISION_GROUP, Endpoint, Endpoints
 from robobt.league.wire.sockets import LOOPBACK_ADDRESS, Receiver
 from robobt.league.world import LeagueWorld

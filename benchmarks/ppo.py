@@ -26,9 +26,9 @@ from robobt.learning.envs import find_task
 from robobt.learning.envs.soccer.settings import SoccerSettings
 from robobt.learning.envs.soccer.suite import against
 from robobt.learning.tasks import environment_id
-from robobt.learning.training.clock import RunClock
 from robobt.learning.training.on_policy import OnPolicyRun
 from robobt.learning.training.problems import Problem, problem_of
+from robobt.learning.training.progress import RunClock
 from robobt.learning.training.run_folder import RunFolder
 from robobt.learning.training.settings import settings_of
 from robobt.statistics import mean_interval

@@ -19,8 +19,8 @@ from robobt.config.yaml import read_yaml
 from robobt.learning import TrainSettings, load_settings
 from robobt.learning.training.progress import OnProgress
 from robobt.learning.training.results import SeedSpread, SeedSummary, summary_of
-from robobt.learning.training.seeds import train_seeds
 from robobt.learning.training.settings import SettingsError
+from robobt.learning.training.train import train_seeds
 
 SWITCHES = Path(__file__).parent / "switches.yaml"
 """The changes to the fast preset that are compared."""
@@ -66,7 +66,7 @@ def compare(
         changes: to every variant's settings, by dotted name.
         workers: processes.
         on_variant: called with the name of the next variant.
-        on_progress: see :func:`robobt.learning.training.seeds.train_seeds`.
+        on_progress: see :func:`robobt.learning.training.train.train_seeds`.
 
     Returns:
         :func:`~robobt.learning.training.results.summary_of` the seeds, by name.

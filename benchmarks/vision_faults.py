@@ -30,7 +30,7 @@ from robobt.league.estimate.filter import VisionFilter
 from robobt.league.picture import PictureWatch
 from robobt.league.sources import VisionSources
 from robobt.league.wire.notices import Notices
-from robobt.league.wire.senders import Address
+from robobt.league.wire.sockets import Address
 from robobt.league.wire.vision import BallDetection, CameraFrame, RobotDetection
 from robobt.sim import REALISM, SimSettings
 from robobt.world import BALL_RADIUS, DIVISION_B, Frame, RobotCommand, RobotId, Team, wrap_angle

@@ -24,7 +24,7 @@ from robobt.cli.option_groups.scenario import parse_play
 from robobt.cli.options import option
 
 if TYPE_CHECKING:
-    from robobt.learning.training.evaluation import Evaluation
+    from robobt.learning.training.results import Evaluation
 
 
 @dataclass(frozen=True)

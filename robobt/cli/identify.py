@@ -142,8 +142,7 @@ def _watch(address: str, seconds: float, log: Path) -> None:
     """Log what the cameras of a field send for some seconds."""
     from robobt.league.connection import LeagueError
     from robobt.league.factory import parse_address
-    from robobt.league.log.files import LogKind
-    from robobt.league.log.recorder import log_field
+    from robobt.league.log.files import LogKind, log_field
 
     connection, _ = parse_address(address)
     warn(f"watching {address} for {seconds:g} s")

@@ -61,7 +61,7 @@ class LineUp:
 
     def served(self, scenario: str | None, seed: int) -> tuple[ServedField, RefereeSettings | None]:
         """Return the field to serve, and a referee's settings where there is to be one."""
-        from robobt.league.serve.serving import served_line_up, served_scenario
+        from robobt.league.serve.served_field import served_line_up, served_scenario
         from robobt.match import load_scenario
         from robobt.match.referee.settings import RefereeSettings
         from robobt.world import FIELDS
@@ -274,8 +274,7 @@ def log_packets(
 
     Keys of --json: vision, tracker, referee: packets written.
     """
-    from robobt.league.log.files import is_log
-    from robobt.league.log.recorder import log_field
+    from robobt.league.log.files import is_log, log_field
     from robobt.league.wire.endpoints import Endpoints
 
     if not is_log(out):

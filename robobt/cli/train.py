@@ -89,7 +89,7 @@ def train(
     time_ratio, steps, cpu_s, evaluation_cpu_s and wall_s with median, low, high).
     """
     from robobt.learning.training.results import figures_of
-    from robobt.learning.training.seeds import train_seeds
+    from robobt.learning.training.train import train_seeds
 
     page.check(live)
     import_files(imports)

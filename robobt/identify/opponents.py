@@ -10,11 +10,10 @@ from math import inf, log
 
 import numpy as np
 
-from robobt.identify.disturbance import undisturbed
 from robobt.identify.estimate import Estimate, quantile, unseen, widened
 from robobt.identify.observations import Observations
 from robobt.identify.robots import UNITS, RobotEstimate
-from robobt.identify.windows import Windows, windows
+from robobt.identify.windows import Windows, undisturbed, windows
 from robobt.world.geometry import FloatArray, wrap_angles
 
 _SPEED_TIME, _RATE_TIME = 0.2, 0.25

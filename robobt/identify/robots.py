@@ -12,10 +12,10 @@ from math import hypot, inf
 
 import numpy as np
 
-from robobt.identify.disturbance import undisturbed
 from robobt.identify.estimate import Estimate, quantile, unseen
 from robobt.identify.observations import Observations
 from robobt.identify.robot_motion import DRIVE_PARAMETERS, motion_after
+from robobt.identify.windows import undisturbed
 from robobt.world.geometry import FloatArray
 from robobt.world.state import RobotId
 

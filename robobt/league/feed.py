@@ -13,7 +13,7 @@ from robobt.league.estimate.clocks import CameraClocks
 from robobt.league.estimate.filter import VisionFilter
 from robobt.league.known_field import KnownField
 from robobt.league.picture import PictureWatch
-from robobt.league.reading import VisionReader
+from robobt.league.sources import VisionReader
 from robobt.league.wire.gamecontroller import RefereeFollower
 from robobt.league.wire.geometry import CameraPlace
 from robobt.league.wire.packets import PacketCounts

@@ -1,17 +1,90 @@
-"""The files of the live page over HTTP, with headers that let it load and ask nothing else."""
+"""The files of the viewer's page, and their answers over HTTP: who may see and steer is checked first."""
 
 from __future__ import annotations
 
+import re
+import secrets
+from collections.abc import Iterable
+from dataclasses import dataclass
 from functools import lru_cache
 from http import HTTPStatus
 from importlib.resources import files
 from pathlib import PurePosixPath
+from typing import Literal
 
 from websockets.asyncio.server import ServerConnection
 from websockets.datastructures import Headers
 from websockets.http11 import Request, Response
 
-from robobt.live.page_files import page_text
+_IMPORT = re.compile(r'^import .* from "\./([a-z_]+\.js)";\n', re.MULTILINE)
+_EXPORT = re.compile(r"^export ", re.MULTILINE)
+
+
+def page_text(name: str) -> str:
+    """Return the text of a file of the page."""
+    return files("robobt.live").joinpath("page", name).read_text(encoding="utf-8")
+
+
+def bundle(entry: str) -> str:
+    """Return a module and all that it imports as one script.
+
+    The modules share one scope there, so no two of them declare the same name; each imports
+    names as they are, one ``import { ... } from "./module.js";`` a line.
+    """
+    taken: dict[str, str] = {}
+
+    def take(name: str) -> None:
+        if name in taken:
+            return
+        text = page_text(name)
+        # Its place is that after the modules it imports.
+        for needed in _IMPORT.findall(text):
+            take(needed)
+        taken[name] = _EXPORT.sub("", _IMPORT.sub("", text))
+
+    take(entry)
+    return '"use strict";\n(() => {\n' + "\n".join(taken.values()) + "})();\n"
+
+
+LOOPBACK_HOSTS = ("127.0.0.1", "localhost", "[::1]")
+
+Refusal = Literal["host", "token", "origin"]
+
+
+@dataclass(slots=True, frozen=True)
+class Access:
+    """What a request has to show.
+
+    Attributes:
+        token: the first part of every path.
+        hosts: the names by which this server may be called, with the port.
+    """
+
+    token: str
+    hosts: frozenset[str]
+
+    @classmethod
+    def new(cls, names: Iterable[str], port: int) -> Access:
+        """Return the access by these names to a port, with a new token."""
+        return cls(secrets.token_urlsafe(16), frozenset(f"{name}:{port}".lower() for name in names))
+
+    def refuses(self, hosts: list[str], path: str, origins: list[str] | None) -> Refusal | None:
+        """Return what is wrong with a request, None where nothing is.
+
+        Args:
+            hosts: its ``Host`` headers.
+            path: what it asks for.
+            origins: its ``Origin`` headers; None where none is needed, as of one that only reads.
+        """
+        if len(hosts) != 1 or hosts[0].lower() not in self.hosts:
+            return "host"
+        token, _, _ = path.removeprefix("/").partition("/")
+        if not secrets.compare_digest(token.encode(), self.token.encode()):
+            return "token"
+        if origins is not None and [origin.lower() for origin in origins] != [f"http://{hosts[0].lower()}"]:
+            return "origin"
+        return None
+
 
 _MEDIA_TYPES = {".html": "text/html", ".css": "text/css", ".js": "text/javascript"}
 _LIVE_HEAD = '<link rel="stylesheet" href="viewer.css">\n<link rel="icon" href="data:,">'

@@ -19,9 +19,16 @@ from typing import TYPE_CHECKING, Any
 
 from robobt.config.errors import RobobtError
 from robobt.config.extras import MissingExtraError
-from robobt.live.access import LOOPBACK_HOSTS, Access
 from robobt.live.audience import MOST_VIEWERS, Audience
-from robobt.live.http import RECORDING_TYPE, PageConnection, file_response, response, without_body
+from robobt.live.http import (
+    LOOPBACK_HOSTS,
+    RECORDING_TYPE,
+    Access,
+    PageConnection,
+    file_response,
+    response,
+    without_body,
+)
 from robobt.live.messages import MOST_MESSAGE_BYTES
 from robobt.live.stream import Stream
 from robobt.world.state import RobotId

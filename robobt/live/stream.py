@@ -21,8 +21,7 @@ import pyarrow as pa
 from pydantic import JsonValue
 
 from robobt.live.page_data import ChunkEncoder, header_data
-from robobt.live.present import Present
-from robobt.live.standing import standing
+from robobt.live.standing import Present, standing
 from robobt.match.recording import Recording, RecordingHeader, RobotFlag
 from robobt.match.recording.capture import Capture, CapturedTick
 from robobt.match.recording.encoder import EncodedTicks, TickEncoder

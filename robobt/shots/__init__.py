@@ -24,7 +24,7 @@ _HOMES = {
     "judge": "predict.validation",
     "load_shot_sets": "predict.shot_sets",
     "measured": "predict.score",
-    "pair_features": "predict.features",
+    "pair_features": "predict.predictors",
     "read_shots": "data",
     "shot_inputs": "data",
     "stratified_folds": "predict.validation",
@@ -41,9 +41,9 @@ if TYPE_CHECKING:
     from robobt.shots.keepers.population import Traits as Traits
     from robobt.shots.predict import best_predictor as best_predictor
     from robobt.shots.predict.batched import Recipe as Recipe
-    from robobt.shots.predict.features import pair_features as pair_features
     from robobt.shots.predict.network_classifier import NetworkClassifier as NetworkClassifier
     from robobt.shots.predict.networks import Layer as Layer
+    from robobt.shots.predict.predictors import pair_features as pair_features
     from robobt.shots.predict.score import measured as measured
     from robobt.shots.predict.shot_sets import ShotSets as ShotSets
     from robobt.shots.predict.shot_sets import load_shot_sets as load_shot_sets

@@ -20,7 +20,7 @@ from typer.testing import CliRunner, Result
 
 from robobt.cli import app, common
 from robobt.league.log.files import read_log
-from robobt.league.serve.serving import served_line_up, served_scenario
+from robobt.league.serve.served_field import served_line_up, served_scenario
 from robobt.league.wire.endpoints import Endpoints
 from robobt.match import load_scenario
 from robobt.match.loop import MatchLoop

@@ -10,7 +10,7 @@ from robobt.learning import TASKS
 from robobt.learning.training.demonstrations import read_demonstrations
 from robobt.learning.training.run_folder import load_run
 from tests.learning.tiny import draw_no_curves
-from tests.learning.training.test_seeds import SHORT
+from tests.learning.training.test_train import SHORT
 from tests.registries import temporarily
 
 OPTIONS = [part for name, value in SHORT.items() for part in ("--set", f"{name}={json.dumps(value)}")]
@@ -59,7 +59,7 @@ def test_a_task_that_a_file_registers_is_found_by_its_name(tmp_path, monkeypatch
         trained.append((settings.task, [*seeds]))
         return []
 
-    monkeypatch.setattr("robobt.learning.training.seeds.train_seeds", train_seeds)
+    monkeypatch.setattr("robobt.learning.training.train.train_seeds", train_seeds)
     with temporarily(TASKS):
         told = run("train", "my_go_to_ball", "--import", mine, "--out", tmp_path / "run")
     assert told.exit_code == 0, told.output

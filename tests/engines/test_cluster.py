@@ -97,8 +97,8 @@ def test_tasks_are_asked_for_only_while_there_is_room(engine: RayEngine) -> None
 
 
 def test_seeds_are_trained_on_a_cluster_as_in_this_process(engine: RayEngine, tmp_path: Path) -> None:
-    from robobt.learning.training.seeds import train_seeds
     from robobt.learning.training.settings import load_settings
+    from robobt.learning.training.train import train_seeds
     from tests.learning.training.test_several_robots import TINY
 
     settings = load_settings("duel", "fast", TINY)

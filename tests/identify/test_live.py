@@ -11,8 +11,8 @@ from typer.testing import CliRunner
 
 from robobt.cli import app
 from robobt.cli import match as cli_match
+from robobt.league.serve.served_field import served_scenario
 from robobt.league.serve.server import SimServer
-from robobt.league.serve.serving import served_scenario
 from robobt.match import load_scenario
 from robobt.match.recording import load_recording
 from robobt.match.scenario.scenario import Scenario

@@ -7,8 +7,8 @@ from collections.abc import Callable
 
 import pytest
 
+from robobt.league.serve.served_field import served_scenario
 from robobt.league.serve.server import SimServer
-from robobt.league.serve.serving import served_scenario
 from robobt.league.wire.endpoints import Endpoints
 from robobt.match import load_scenario
 from robobt.match.loop import MatchLoop

@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 from robobt.league.known_field import KnownField
+from robobt.league.serve.served_field import served_scenario
 from robobt.league.serve.server import SimServer
-from robobt.league.serve.serving import served_scenario
 from robobt.match import load_scenario
 from robobt.match.loop import MatchLoop
 from robobt.sim import settings_from

@@ -17,8 +17,8 @@ import pytest
 from robobt.league.referee.lockstep import LockstepController
 from robobt.league.referee.process import GameControllerProcess
 from robobt.league.referee.setup import command, stage
+from robobt.league.serve.served_field import served_scenario
 from robobt.league.serve.server import SimServer
-from robobt.league.serve.serving import served_scenario
 from robobt.league.wire.messages import Change, Config, Referee
 from robobt.league.wire.sockets import Sender
 from robobt.match import MatchLoop, load_scenario

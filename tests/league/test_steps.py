@@ -6,8 +6,8 @@ import threading
 
 import pytest
 
+from robobt.league.serve.served_field import served_scenario
 from robobt.league.serve.server import SimServer
-from robobt.league.serve.serving import served_scenario
 from robobt.league.serve.synchronous import StepServer
 from robobt.league.wire.stream import StreamError
 from robobt.league.world import LeagueWorld

@@ -11,8 +11,8 @@ from robobt.learning.agents.nstep import Transitions
 from robobt.learning.agents.replay import ReplayBuffer
 from robobt.learning.agents.settings import AgentSettings
 from robobt.learning.envs import StepResult
-from robobt.learning.training.evaluation import Evaluation
 from robobt.learning.training.problems import Problem, split_seed
+from robobt.learning.training.results import Evaluation
 from robobt.learning.training.settings import TrainSettings, settings_of
 
 torch.set_num_threads(1)
@@ -110,7 +110,7 @@ def slide_settings(**changes) -> TrainSettings:
 
 def draw_no_curves(monkeypatch: pytest.MonkeyPatch) -> None:
     """Leave out the picture of a run, which takes longer than a tiny training."""
-    for module in ("run_folder", "seeds"):
+    for module in ("run_folder", "train"):
         monkeypatch.setattr(f"robobt.learning.training.{module}.draw_curves", lambda *_: None)
 
 

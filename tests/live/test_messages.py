@@ -14,10 +14,10 @@ from typing import Any
 import pytest
 from websockets.exceptions import ConnectionClosed
 
+from robobt.live.audience import problem_with
 from robobt.live.hands import Hands
 from robobt.live.messages import FORMS as FORMS_BY_NAME
 from robobt.live.messages import MOST_MESSAGE_BYTES, MOST_REFUSED, Message, read
-from robobt.live.refusals import problem_with
 from robobt.live.server import Server
 from robobt.match import MatchLoop, load_scenario
 from robobt.plays import PLAYS

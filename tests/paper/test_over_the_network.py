@@ -10,7 +10,7 @@ from typer.testing import CliRunner
 from paper.__main__ import application
 from paper.deployed import SITUATIONS, deployed, deployed_scenario
 from paper.table4 import COMBINATIONS, Conditions, table4, table4_scenario
-from robobt.league.serve.serving import served_scenario
+from robobt.league.serve.served_field import served_scenario
 from robobt.league.wire.endpoints import Endpoints
 from robobt.match.scenario.scenario import Scenario
 from robobt.worlds import world_from

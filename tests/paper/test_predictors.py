@@ -6,8 +6,8 @@ from sklearn.pipeline import Pipeline
 from paper.predictors import KIKS, PREDICTORS, kiks_features
 from robobt.shots.data import goals, shot_inputs
 from robobt.shots.predict.batched import Recipe
-from robobt.shots.predict.features import pair_features
 from robobt.shots.predict.network_classifier import NetworkClassifier
+from robobt.shots.predict.predictors import pair_features
 from robobt.world.features import SCENE_HEAD
 from tests.shots.made_up import QUICK, made_up_table
 

@@ -10,7 +10,7 @@ from paper.reliability_diagram import draw_reliability
 from paper.table2 import table2
 from paper.table3 import table3
 from robobt.shots.data.files import write_shots
-from robobt.shots.data.problems import ShotDataError
+from robobt.shots.data.schema import ShotDataError
 from robobt.shots.predict.shot_sets import load_shot_sets
 from robobt.statistics import ReliabilityBin
 from tests.shots.made_up import made_up_table, train_quickly

@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 
 from robobt.league.log.files import LogKind, LogWriter
+from robobt.league.serve.served_field import served_line_up
 from robobt.league.serve.server import SimServer
-from robobt.league.serve.serving import served_line_up
 from robobt.league.wire.referee_publisher import RefereePublisher
 from robobt.what_if import Branches, load_logged
 from robobt.world import DIVISION_B, RobotId, Team

@@ -13,10 +13,9 @@ from uuid import UUID
 import numpy as np
 
 from robobt.config.systems import need_posix
-from robobt.league.programs.ports import MOST_PACKETS, MatchPorts
+from robobt.league.programs.ports import MOST_PACKETS, MatchPorts, StepPort
 from robobt.league.programs.process import MOST_OUTPUT, TeamProcess
 from robobt.league.programs.program import ForfeitError, Program
-from robobt.league.programs.steps import StepPort
 from robobt.league.serve.cameras import Cameras
 from robobt.league.serve.publishing import GEOMETRY_INTERVAL
 from robobt.league.wire.geometry import write_geometry

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 
-from robobt.league.serve.referee import ServedReferee
 from robobt.league.serve.served_field import ServedField
+from robobt.league.serve.server import ServedReferee
 from robobt.league.wire.commands import BallTeleport, Teleport
-from robobt.live.grip import HeldObjects
+from robobt.live.hands import HeldObjects
 from robobt.live.messages import Act, MoveBall, MoveRobot, TakeOff, robot_of
 from robobt.live.server import Server
 from robobt.live.stream import Stream

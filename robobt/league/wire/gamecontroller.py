@@ -20,7 +20,7 @@ from robobt.league.wire.referee_message import (
     command_of,
     read_message,
 )
-from robobt.league.wire.senders import Address, FirstSender
+from robobt.league.wire.sockets import Address, FirstSender
 from robobt.match.referee.events import RefereeEvent
 from robobt.world.game import GameState, RefereeCommand, Restart, Stage, Team, TeamStatus
 from robobt.world.geometry import Point, distance

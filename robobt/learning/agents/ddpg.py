@@ -21,12 +21,44 @@ import numpy as np
 import torch
 from torch import Tensor
 
-from robobt.learning.agents.distributional import Atoms
-from robobt.learning.agents.learner import Learner
+from robobt.learning.agents.learner import Adam, Learner
 from robobt.learning.agents.networks import Actor, Critic
-from robobt.learning.agents.optimiser import Adam
 from robobt.learning.agents.replay import Batch, Bootstrap
 from robobt.learning.agents.settings import AgentSettings
+
+
+class Atoms:
+    """At least 2 evenly spaced returns from ``low`` to ``high``; returns beyond are clipped to them."""
+
+    def __init__(self, low: float, high: float, count: int) -> None:
+        if count < 2 or not low < high:
+            raise ValueError(f"needs at least 2 atoms on a rising range, not {count} from {low} to {high}")
+        self.low, self.high, self.count = low, high, count
+        self.values = torch.linspace(low, high, count)
+
+    def mean(self, logits: Tensor) -> Tensor:
+        """Compute the expected return of (..., atoms) logits: (...)."""
+        return torch.softmax(logits, -1) @ self.values
+
+    def project(self, probabilities: Tensor, reward: Tensor, discount: Tensor) -> Tensor:
+        """Project the distribution of reward + discount * Z on the atoms.
+
+        ``reward`` and ``discount`` are (batch,), ``probabilities``, Z's, and the answer (batch, atoms), each
+        row of which has mass 1.
+        """
+        width = (self.high - self.low) / (self.count - 1)
+        moved = reward[:, None] + discount[:, None] * self.values
+        place = (moved.clamp(self.low, self.high) - self.low) / width
+        # Rounding can push the last place past the last atom.
+        lower = place.floor().clamp_(0, self.count - 1)
+        # On an atom both neighbours are that atom: all of the mass stays with the lower.
+        upper_share = place - lower
+        upper = (lower + 1).clamp_(max=self.count - 1)
+        projected = torch.zeros_like(probabilities)
+        projected.scatter_add_(1, lower.long(), probabilities * (1 - upper_share))
+        projected.scatter_add_(1, upper.long(), probabilities * upper_share)
+        return projected
+
 
 _NORM_EVERY = 16
 """Gradient norms are logged once per this many updates, because they cost as much as a layer."""

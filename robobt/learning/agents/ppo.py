@@ -31,10 +31,9 @@ import torch
 from torch import Tensor, nn
 from torch.nn.functional import softplus
 
-from robobt.learning.agents.learner import Learner
+from robobt.learning.agents.learner import Adam, Learner
 from robobt.learning.agents.mixed_actions import MixedActions, Numbers
 from robobt.learning.agents.networks import Actor, body_of
-from robobt.learning.agents.optimiser import Adam
 from robobt.learning.agents.rollout import Floats, Rollout, advantages
 from robobt.learning.agents.settings import PPOSettings
 from robobt.world.observation import Group

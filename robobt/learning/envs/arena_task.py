@@ -9,9 +9,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from robobt.learning.envs.episodes import Episodes
-from robobt.learning.envs.judging import Ledger, count, goals
+from robobt.learning.envs.judging import PROGRESS, Ledger, count, goals, progress_at
 from robobt.learning.envs.perception import Perception
-from robobt.learning.envs.progress import PROGRESS, progress_at
 from robobt.learning.envs.randomiser import Randomiser
 from robobt.learning.envs.settings import MemorySettings, TaskSettings
 from robobt.learning.envs.starts import StartPool, check_starts, columns_of, commands_before, split

@@ -7,9 +7,7 @@ from math import lcm
 
 from robobt.learning.envs import TaskSettings, VectorTask
 from robobt.learning.envs.make import learners_of, make_rows
-from robobt.learning.envs.per_robot import PerRobot
-from robobt.learning.envs.several_worlds import SeveralWorlds
-from robobt.learning.envs.soccer.one_side import OneSide, Others
+from robobt.learning.envs.per_robot import OneSide, Others, PerRobot, SeveralWorlds
 from robobt.learning.envs.soccer.settings import LEARNER, SoccerSettings
 from robobt.learning.envs.soccer.suite import against
 from robobt.learning.training.setting_groups import PoolSettings

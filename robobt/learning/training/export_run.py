@@ -14,10 +14,9 @@ from robobt import __version__
 from robobt.config.commit import source_commit
 from robobt.learning.agents.networks import one_thread, policy_of, resized
 from robobt.learning.envs import make_task
-from robobt.learning.training.evaluation import Evaluation
 from robobt.learning.training.fresh_starts import best_seed
 from robobt.learning.training.problems import problem_of
-from robobt.learning.training.results import TrainResult
+from robobt.learning.training.results import Evaluation, TrainResult
 from robobt.learning.training.run_folder import check_task, load_run
 from robobt.learning.training.settings import evaluated_on
 from robobt.models.card import MODEL_NAME, Measured, ModelCard, ObservationCard, action_outputs

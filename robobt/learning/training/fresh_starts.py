@@ -10,8 +10,8 @@ from robobt.config.errors import RobobtError
 from robobt.learning.agents.networks import policy_of
 from robobt.learning.envs import ArenaTask, TaskSettings, make_task, run_starts
 from robobt.learning.envs.make import find_task
-from robobt.learning.training.evaluation import Evaluation, Policy
 from robobt.learning.training.preset_files import merged
+from robobt.learning.training.results import Evaluation, Policy
 from robobt.learning.training.run_folder import RESULT, load_run
 from robobt.learning.training.settings import evaluated_on
 from robobt.learning.training.teachers import TEACHERS, TeacherError, playing

@@ -8,12 +8,10 @@ from typing import Any
 import numpy as np
 
 from robobt.learning.envs import ArenaTask, VectorTask
-from robobt.learning.envs.per_robot import PerRobot
-from robobt.learning.envs.several_worlds import SeveralWorlds
+from robobt.learning.envs.per_robot import PerRobot, SeveralWorlds
 from robobt.learning.envs.task import BoolArray, FloatArray, StepResult
 from robobt.learning.training.setting_groups import ImitationSettings
-from robobt.learning.training.teachers import TeacherError
-from robobt.learning.training.team_teachers import TeamTeacher, teacher_of
+from robobt.learning.training.teachers import TeacherError, TeamTeacher, teacher_of
 
 
 class Lesson:

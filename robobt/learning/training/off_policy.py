@@ -9,10 +9,9 @@ from robobt.learning.agents.networks import Actor, policy_of
 from robobt.learning.agents.nstep import NStep
 from robobt.learning.agents.replay import PrioritisedReplay, ReplayBuffer
 from robobt.learning.training.checkpoint import Arrays, RunState
-from robobt.learning.training.clock import RunClock
 from robobt.learning.training.demonstrations import demonstrations_for
 from robobt.learning.training.problems import Problem
-from robobt.learning.training.progress import OnProgress
+from robobt.learning.training.progress import OnProgress, RunClock
 from robobt.learning.training.run import TrainError, TrainingRun, part
 from robobt.learning.training.run_folder import RunFolder
 from robobt.learning.training.settings import TrainSettings

@@ -12,10 +12,9 @@ from robobt.learning.agents.ppo import PPO, PolicyUpdate
 from robobt.learning.agents.rollout import Rollout
 from robobt.learning.envs import make_task
 from robobt.learning.training.checkpoint import Arrays, RunState
-from robobt.learning.training.clock import RunClock
 from robobt.learning.training.imitation import Lesson
 from robobt.learning.training.problems import Problem
-from robobt.learning.training.progress import OnProgress
+from robobt.learning.training.progress import OnProgress, RunClock
 from robobt.learning.training.run import TrainError, TrainingRun, part
 from robobt.learning.training.run_folder import ACTOR, RunFolder, load_actor, read_settings
 from robobt.learning.training.settings import TrainSettings

@@ -10,9 +10,9 @@ import numpy as np
 
 from robobt.learning.envs import TaskSettings, VectorTask, make_task, run_starts
 from robobt.learning.envs.episodes import Episodes
-from robobt.learning.envs.soccer.one_side import Others
+from robobt.learning.envs.per_robot import Others
 from robobt.learning.training.arenas import arenas_of, opposed_arenas, shares_of
-from robobt.learning.training.evaluation import Evaluation, Policy
+from robobt.learning.training.results import Evaluation, Policy
 from robobt.learning.training.settings import (
     TrainSettings,
     evaluated_on,

@@ -11,12 +11,11 @@ import numpy as np
 from robobt import __version__
 from robobt.config.commit import source_commit
 from robobt.config.errors import RobobtError
-from robobt.learning.agents.diagnostics import Diagnostics
+from robobt.learning.agents.learner import Diagnostics
 from robobt.learning.agents.networks import Actor, policy_of
 from robobt.learning.training.checkpoint import Arrays, RunState, digest_of
-from robobt.learning.training.clock import RunClock
 from robobt.learning.training.problems import Problem, training_seed
-from robobt.learning.training.progress import OnProgress, Reporter
+from robobt.learning.training.progress import OnProgress, Reporter, RunClock
 from robobt.learning.training.results import Figures, TrainResult, Validation, held_out_figures
 from robobt.learning.training.run_folder import RunFolder
 from robobt.learning.training.selection import Selection

@@ -10,8 +10,8 @@ from queue import Empty
 import numpy as np
 
 from robobt.learning.envs import ArenaTask, make_task
-from robobt.learning.training.evaluation import Evaluation, Policy
 from robobt.learning.training.problems import Problem, Split, problem_for, split_seed
+from robobt.learning.training.results import Evaluation, Policy
 from robobt.learning.training.settings import TrainSettings
 from robobt.live.controls import IDLE_POLL, Controls
 from robobt.live.server import Server

@@ -11,10 +11,41 @@ from torch import Tensor
 from torch.utils._python_dispatch import TorchDispatchMode
 from torch.utils._pytree import tree_leaves, tree_map
 
-from robobt.models.checks.answers import usual_answer
 from robobt.models.checks.limits import ELEMENT, MAX_OUTPUT_BYTES, OTHER_TYPE, RECURRENT_GATES, largest_work
 from robobt.models.checks.operations import MOST_PIECES, TRAPPING
 from robobt.models.file import ModelError
+
+_BROADCAST = frozenset({getattr(torch.ops.aten, name).Tensor for name in ("add", "sub", "mul", "div")})
+_SAME_SHAPE = frozenset({getattr(torch.ops.aten, name).default for name in ("tanh", "relu", "sigmoid")})
+
+
+def usual_answer(func: torch._ops.OpOverload, args: Sequence[object]) -> Tensor | None:
+    """Return the answer of a usual operation as a tensor without memory.
+
+    Args:
+        func: the operation.
+        args: its arguments; what is given by name changes no size.
+
+    Returns:
+        The answer, or None where torch has to say what it would be.
+    """
+    tensors = [one for one in args if isinstance(one, Tensor)]
+    if not tensors or any(one.dtype != torch.float32 or one.device.type != "cpu" for one in tensors):
+        return None
+    shapes = [tuple(one.shape) for one in tensors]
+    first, *others = shapes
+    if func in _SAME_SHAPE:
+        return torch.empty(first, device="meta")
+    if func in _BROADCAST and len(others) == 1 and first[-len(others[0]) :] == others[0]:
+        return torch.empty(first, device="meta")
+    if func is torch.ops.aten.layer_norm.default and args[1] == [*first[-1:]]:
+        return torch.empty(first, device="meta") if all(other == first[-1:] for other in others) else None
+    if func is torch.ops.aten.linear.default:
+        weights, *bias = others
+        if len(weights) == 2 and first[-1:] == weights[1:] and all(one == weights[:1] for one in bias):
+            return torch.empty((*first[:-1], weights[0]), device="meta")
+    return None
+
 
 _CONTRACTIONS = frozenset({"mm", "addmm", "bmm", "baddbmm", "addmv", "mv", "dot", "linear", "matmul"})
 

@@ -7,15 +7,36 @@ from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from time import perf_counter
+from typing import NamedTuple
 
 from robobt.config.errors import RobobtError
 from robobt.engines.run import run_tasks
 from robobt.engines.work import MAX_WORKERS, Work
+from robobt.shots.collect.balanced import balanced_attempt
 from robobt.shots.collect.file import CollectionFile
-from robobt.shots.collect.paper import PARTS, TEST, TRAIN, splits
+from robobt.shots.collect.fitted import against_fitted
+from robobt.shots.collect.paper import PARTS, TEST, TRAIN, paper_attempt, splits
 from robobt.shots.collect.plan import CollectionSettings
-from robobt.shots.collect.trial import Taken, play_trial
-from robobt.shots.data.schema import Row
+from robobt.shots.collect.watch import take_shot
+from robobt.shots.data.schema import Row, complete_row
+
+
+class Taken(NamedTuple):
+    """The result of one trial: its shot, or None, and its simulated duration [s]."""
+
+    trial: int
+    row: Row | None
+    time: float
+
+
+def play_trial(settings: CollectionSettings, trial: int) -> Taken:
+    """Play one trial; its shot depends only on the settings and the trial's number. Return the result."""
+    attempt = (paper_attempt if settings.protocol == "paper" else balanced_attempt)(settings, trial)
+    if settings.goalkeepers is not None:
+        attempt = against_fitted(attempt, settings.goalkeepers)
+    shot, time = take_shot(attempt, trial)
+    return Taken(trial, None if shot is None else complete_row(shot), time)
+
 
 PAPER_COUNT = TRAIN + TEST
 """Shots of the paper's protocol."""

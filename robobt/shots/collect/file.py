@@ -18,8 +18,7 @@ from robobt import __version__
 from robobt.config.atomic import write_atomically
 from robobt.shots.collect.plan import CollectionSettings
 from robobt.shots.data.files import csv_text, read_shots, write_shots
-from robobt.shots.data.problems import ShotDataError
-from robobt.shots.data.schema import SCHEMA, SHOT_COLUMNS, SHOTS_VERSION, Row
+from robobt.shots.data.schema import SCHEMA, SHOT_COLUMNS, SHOTS_VERSION, Row, ShotDataError
 
 SHOTS_FORMAT = "robobt-shots"
 

@@ -15,8 +15,7 @@ import pyarrow as pa
 from numpy.typing import NDArray
 
 from robobt.shots.data.cells import Cells
-from robobt.shots.data.problems import ShotDataError
-from robobt.shots.data.schema import SCHEMA, SHOT_COLUMNS, SHOTS_VERSION, UNKNOWN, turned
+from robobt.shots.data.schema import SCHEMA, SHOT_COLUMNS, SHOTS_VERSION, UNKNOWN, ShotDataError, turned
 from robobt.world.geometry import FloatArray
 
 AUTHORS_BALL_RADIUS = 0.0215

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, TypeVar
 
-from robobt.shots.data.problems import ShotDataError
+from robobt.shots.data.schema import ShotDataError
 
 T = TypeVar("T")
 

@@ -17,8 +17,15 @@ import pyarrow.parquet as pq
 from robobt.config.atomic import replacing
 from robobt.shots.data.author_data import author_table
 from robobt.shots.data.cells import Cells, Problems, read_cells, refuse
-from robobt.shots.data.problems import ShotDataError
-from robobt.shots.data.schema import LATER_COLUMNS, SCHEMA, SHOT_COLUMNS, SHOTS_VERSION, UNKNOWN, Row
+from robobt.shots.data.schema import (
+    LATER_COLUMNS,
+    SCHEMA,
+    SHOT_COLUMNS,
+    SHOTS_VERSION,
+    UNKNOWN,
+    Row,
+    ShotDataError,
+)
 
 _SEPARATOR = ";"
 """Between the numbers of a list in a cell of a CSV file."""

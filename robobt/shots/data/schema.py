@@ -15,7 +15,13 @@ import numpy as np
 import pyarrow as pa
 from numpy.typing import ArrayLike
 
+from robobt.config.errors import RobobtError
 from robobt.world.geometry import FloatArray
+
+
+class ShotDataError(RobobtError, ValueError):
+    """A file of shots is invalid; the message names the file, the row and the column."""
+
 
 SHOTS_VERSION = 1
 """Of this table; in every row, so that a file says which one it holds."""

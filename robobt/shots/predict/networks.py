@@ -11,7 +11,7 @@ import torch
 from torch import Tensor, nn
 from torch.nn.functional import silu
 
-from robobt.shots.data.problems import ShotDataError
+from robobt.shots.data.schema import ShotDataError
 
 NORM_EPS = 1e-3
 NORM_MOMENTUM = 0.01

@@ -7,7 +7,7 @@ import torch
 from sklearn.pipeline import Pipeline
 from torch import Tensor, nn
 
-from robobt.shots.predict.features import motion_features
+from robobt.shots.predict.predictors import motion_features
 from robobt.world.features import SCENE_HEAD, SCENE_OPPONENTS
 from robobt.world.geometry import FloatArray
 

@@ -14,9 +14,8 @@ from robobt.models.card import Measured
 from robobt.models.file import ModelError
 from robobt.models.policy import load_policy
 from robobt.shots.data.inputs import PLACE_COLUMNS, asked_inputs, goals
-from robobt.shots.data.problems import ShotDataError
-from robobt.shots.data.schema import SCHEMA, SHOT_COLUMNS
-from robobt.shots.predict.features import pair_features
+from robobt.shots.data.schema import SCHEMA, SHOT_COLUMNS, ShotDataError
+from robobt.shots.predict.predictors import pair_features
 from robobt.shots.predict.validation import judge
 from robobt.skills.aim.goalkeeper_watch import updated
 from robobt.statistics import calibration_error, mean_interval, wilson_interval

@@ -18,11 +18,9 @@ from robobt.config.commit import source_commit
 from robobt.models.card import Measured, ModelCard, ObservationCard, OutputEntry
 from robobt.models.export import export_model
 from robobt.shots.data.inputs import asked_inputs, goals
-from robobt.shots.data.problems import ShotDataError
-from robobt.shots.data.schema import AS_RECORDED, GOALKEEPERS
-from robobt.shots.predict.features import pair_features
+from robobt.shots.data.schema import AS_RECORDED, GOALKEEPERS, ShotDataError
 from robobt.shots.predict.network_classifier import NetworkClassifier
-from robobt.shots.predict.predictors import best_predictor
+from robobt.shots.predict.predictors import best_predictor, pair_features
 from robobt.shots.predict.quadratic import QuadraticShot
 from robobt.shots.predict.scene_network import SceneNetwork, train_scene_network
 from robobt.shots.predict.score import answers_in_order, measured

@@ -12,7 +12,7 @@ from sklearn.model_selection import train_test_split
 from robobt.config.resources import models_folder
 from robobt.shots.data.files import read_shots
 from robobt.shots.data.inputs import goals
-from robobt.shots.data.problems import ShotDataError
+from robobt.shots.data.schema import ShotDataError
 from robobt.shots.predict.networks import ShotNetwork, author_network
 
 AUTHOR_WEIGHTS = "author_predictor.json"

@@ -8,8 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from robobt.league.wire.senders import Address
-from robobt.league.wire.sockets import Packet
+from robobt.league.wire.sockets import Address, Packet
 from robobt.league.wire.vision import BallDetection, CameraFrame, RobotDetection, write_vision
 from robobt.league.world import LeagueWorld
 from robobt.world.command import RobotCommand

@@ -4,7 +4,10 @@ from __future__ import annotations
 
 import gzip
 import logging
+import random
+import resource
 import struct
+import time
 import tracemalloc
 from pathlib import Path
 
@@ -12,10 +15,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from robobt.config.errors import RobobtError
 from robobt.league.log.files import LogError, LogKind, LogRecord, LogWriter, is_log, read_log
 from robobt.league.log.world import LogWorld, record_log
+from robobt.league.serve.served_field import served_line_up
 from robobt.league.serve.server import SimServer
-from robobt.league.serve.serving import served_line_up
 from robobt.league.wire.gameevents import write_event
 from robobt.league.wire.messages import Referee
 from robobt.league.wire.packets import PacketCounts
@@ -33,7 +37,9 @@ from robobt.world.game import GameState, RefereeCommand, Team
 from robobt.world.protocol import Placement
 from robobt.world.state import RobotId
 from robobt.worlds import world_from
+from tests.campaign import count
 from tests.league.served import free_endpoints
+from tests.mutation import mutated
 
 RECORDS = [
     LogRecord(1_700_000_000_000_000_001, LogKind.VISION, b"a frame"),
@@ -286,3 +292,37 @@ def test_a_scenarios_robots_watch_a_log(played: Path) -> None:
 )
 def test_logs_are_known_by_their_names(name: str, expected: bool) -> None:
     assert is_log(name) is expected
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("ending", ["log", "log.gz"])
+def test_mutated_logs_are_replayed_or_refused(ending: str, tmp_path: Path) -> None:
+    logging.getLogger("robobt").setLevel(logging.CRITICAL)
+    rng, replayed = random.Random(22), 0
+    whole, path = tmp_path / "whole.log", tmp_path / f"game.{ending}"
+    field = served_line_up(DIVISION_A, 2, "default")
+    with LogWriter(whole) as log, SimServer(field, free_endpoints(), epoch=1.7e9, log=log) as server:
+        for _ in range(20):
+            server.step()
+            server.send_due(field.time)
+        log.write(round(1.7e18), LogKind.REFEREE, b"\x08\x01")
+    original = whole.read_bytes()
+    before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    for number in range(count(10_000)):
+        data = mutated(original, rng)
+        if ending == "log.gz":
+            # Half of them damaged before they are packed, half after.
+            data = gzip.compress(data, 1) if number % 2 else mutated(gzip.compress(original, 1), rng)
+        path.write_bytes(data)
+        begun = time.process_time()
+        try:
+            for _ in read_log(path):
+                pass
+            record_log(path, tmp_path / "out.robobt.arrows")
+            replayed += 1
+        except RobobtError as error:
+            said = str(error)
+            assert "\n" not in said
+        assert time.process_time() - begun < 10.0
+    assert resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before < 200_000
+    print(f"{replayed} of {count(10_000)} were replayed")

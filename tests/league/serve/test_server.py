@@ -9,10 +9,8 @@ from typing import TypeVar
 
 import pytest
 
-from robobt.league.serve.referee import ServedReferee
-from robobt.league.serve.served_field import ServedField
-from robobt.league.serve.server import Clock, SimServer
-from robobt.league.serve.serving import served_line_up
+from robobt.league.serve.served_field import ServedField, served_line_up
+from robobt.league.serve.server import Clock, ServedReferee, SimServer
 from robobt.league.wire.commands import BallTeleport, Teleport
 from robobt.league.wire.endpoints import Endpoints
 from robobt.league.wire.gamecontroller import RefereeFollower

@@ -8,6 +8,8 @@ from typing import Any
 import pytest
 
 from robobt.league.wire import messages
+from robobt.league.wire.messages import SSL_WrapperPacket
+from robobt.league.wire.packets import PacketCounts, decode
 from tests.league.plain_protobuf import ENUM_VALUES, FIELDS, encode, full_type, random_values
 
 PUBLISHED = sorted(name for name in FIELDS if not name.startswith("google.") and name != "GameEvent")
@@ -101,3 +103,17 @@ def test_an_event_that_lacks_what_the_league_requires_does_not_cost_the_packet()
     message = messages.GameEvent(type=6)
     message.ball_left_field_touch_line.by_bot = 3
     assert messages.GameEvent.FromString(message.SerializeToString()).IsInitialized()
+
+
+def test_what_is_no_message_is_counted() -> None:
+    counts = PacketCounts()
+    assert decode(SSL_WrapperPacket, b"\xff\xff\xff", counts) is None
+    assert decode(SSL_WrapperPacket, b"\x0a\x01", counts) is None
+    assert counts.unreadable == 2
+
+
+def test_a_message_without_a_required_field_is_counted() -> None:
+    counts = PacketCounts()
+    assert decode(SSL_WrapperPacket, b"\x0a\x00", counts) is None
+    assert counts.incomplete == 1
+    assert counts.dropped == 1

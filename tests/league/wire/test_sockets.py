@@ -7,6 +7,7 @@ from collections.abc import Iterator
 
 import pytest
 
+from robobt.league.wire.endpoints import parse_endpoint
 from robobt.league.wire.packets import MAX_PACKET
 from robobt.league.wire.sockets import Packet, Receiver, Sender, SocketError
 from tests.waiting import soon
@@ -98,3 +99,9 @@ def test_an_unknown_interface_is_one_plain_error() -> None:
 def test_a_taken_port_is_one_plain_error(receiver: Receiver) -> None:
     with pytest.raises(SocketError, match=rf"cannot receive at 127\.0\.0\.1:{receiver.port}: "):
         Receiver("127.0.0.1", receiver.port)
+
+
+@pytest.mark.parametrize("text", ["here", "224.5.23.2", "224.5.23.2:", "224.5.23.2:70000", "localhost:1"])
+def test_an_endpoint_that_is_none_is_one_plain_error(text: str) -> None:
+    with pytest.raises(ValueError, match=r"is not an address like 224\.5\.23\.2:10006"):
+        parse_endpoint(text)

@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 
 from robobt.learning.agents.nstep import Transitions
-from robobt.learning.agents.replay import PrioritisedReplay, ReplayBuffer
-from robobt.learning.agents.sum_tree import SumTree
+from robobt.learning.agents.replay import PrioritisedReplay, ReplayBuffer, SumTree
 
 
 def rows(first, count):

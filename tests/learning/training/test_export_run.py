@@ -12,8 +12,8 @@ from typer.testing import CliRunner
 from robobt import __version__
 from robobt.cli import app
 from robobt.config.commit import source_commit
-from robobt.learning.training.evaluation import Evaluation
 from robobt.learning.training.export_run import export_run, held_out
+from robobt.learning.training.results import Evaluation
 from robobt.learning.training.run_folder import RunFolderError, load_run
 from robobt.learning.training.settings import load_settings
 from robobt.learning.training.train import train

@@ -12,8 +12,7 @@ from robobt.learning.agents.ppo import PPO
 from robobt.learning.agents.rollout import Rollout
 from robobt.learning.agents.settings import PPOSettings
 from robobt.learning.envs import GoToBallTask
-from robobt.learning.envs.per_robot import PerRobot
-from robobt.learning.envs.several_worlds import SeveralWorlds
+from robobt.learning.envs.per_robot import PerRobot, SeveralWorlds
 from robobt.learning.envs.soccer.settings import SoccerSettings
 from robobt.learning.envs.soccer.suite import SUITE
 from robobt.learning.envs.soccer.task import SoccerTask
@@ -21,8 +20,7 @@ from robobt.learning.training.arenas import opposed_arenas
 from robobt.learning.training.imitation import Lesson
 from robobt.learning.training.setting_groups import ImitationSettings, PoolSettings
 from robobt.learning.training.settings import SettingsError, load_settings
-from robobt.learning.training.teachers import TeacherError
-from robobt.learning.training.team_teachers import actions_of, teacher_of
+from robobt.learning.training.teachers import TeacherError, actions_of, teacher_of
 from robobt.learning.training.train import train
 from robobt.models.actions import SCORE_ACTION, command_of
 from robobt.models.policy import load_policy

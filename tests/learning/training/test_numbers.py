@@ -10,7 +10,7 @@ import torch
 
 from robobt.learning.agents.networks import policy_of
 from robobt.learning.envs import make_task
-from robobt.learning.envs.several_worlds import SeveralWorlds
+from robobt.learning.envs.per_robot import SeveralWorlds
 from robobt.learning.envs.soccer.settings import SoccerSettings
 from robobt.learning.training.arenas import arenas_of, learners_in
 from robobt.learning.training.export_run import export_run

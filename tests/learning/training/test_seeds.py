@@ -8,10 +8,10 @@ from benchmarks.train import compare, table_of
 from robobt.learning.agents.networks import Actor
 from robobt.learning.training.results import Validation, first_reaching, summary_of
 from robobt.learning.training.run_folder import load_run
-from robobt.learning.training.seeds import train_seeds
 from robobt.learning.training.selection import Selection
 from robobt.learning.training.setting_groups import EvaluationSettings
 from robobt.learning.training.settings import SettingsError, load_settings
+from robobt.learning.training.train import train_seeds
 
 SHORT = {
     "steps": 256,

@@ -12,9 +12,7 @@ import torch
 from robobt.learning.agents.networks import Actor, policy_of
 from robobt.learning.agents.past_selves import PastSelves
 from robobt.learning.envs import ArenaTask
-from robobt.learning.envs.per_robot import PerRobot
-from robobt.learning.envs.several_worlds import SeveralWorlds
-from robobt.learning.envs.soccer.one_side import OneSide
+from robobt.learning.envs.per_robot import OneSide, PerRobot, SeveralWorlds
 from robobt.learning.envs.soccer.suite import SUITE
 from robobt.learning.envs.soccer.task import SoccerTask
 from robobt.learning.training.arenas import opposed, opposed_arenas

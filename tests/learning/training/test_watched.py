@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from robobt.learning.training import watched
-from robobt.learning.training.evaluation import FloatArray
 from robobt.learning.training.problems import problem_of
+from robobt.learning.training.results import FloatArray
 from robobt.learning.training.settings import load_settings
 from robobt.live.messages import Speed
 from robobt.live.server import Server

@@ -6,7 +6,7 @@ import pytest
 import torch
 
 from robobt.models.checks import bounds
-from robobt.models.checks.answers import usual_answer
+from robobt.models.checks.bounds import usual_answer
 from robobt.models.policy import load_policy
 
 ATEN = torch.ops.aten

@@ -7,15 +7,12 @@ import pyarrow.parquet as pq
 import pytest
 
 from robobt.shots.collect.balanced import balanced_attempt
-from robobt.shots.collect.collect import PAPER_COUNT, CollectionError, collect_shots
-from robobt.shots.collect.late import LateWorld
+from robobt.shots.collect.collect import PAPER_COUNT, CollectionError, collect_shots, play_trial
 from robobt.shots.collect.paper import PARTS, SECTIONS, paper_attempt, splits
 from robobt.shots.collect.plan import CollectionSettings
-from robobt.shots.collect.trial import play_trial
-from robobt.shots.collect.watch import take_shot
+from robobt.shots.collect.watch import LateWorld, take_shot
 from robobt.shots.data.files import read_shots
-from robobt.shots.data.problems import ShotDataError
-from robobt.shots.data.schema import SHOT_COLUMNS
+from robobt.shots.data.schema import SHOT_COLUMNS, ShotDataError
 from robobt.shots.keepers.population import REAL, read_population
 from robobt.sim import SimWorld, preset
 from robobt.world import RobotCommand, RobotId, Team

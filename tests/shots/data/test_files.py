@@ -1,4 +1,9 @@
+from __future__ import annotations
+
 import math
+import random
+import resource
+import time
 from pathlib import Path
 
 import numpy as np
@@ -7,8 +12,9 @@ import pyarrow.parquet as pq
 import pytest
 
 from robobt.shots.data.files import csv_text, read_shots, write_shots
-from robobt.shots.data.problems import ShotDataError
-from robobt.shots.data.schema import SCHEMA, complete_row
+from robobt.shots.data.schema import SCHEMA, ShotDataError, complete_row
+from tests.campaign import count
+from tests.mutation import mutated
 from tests.shots.real_data import REAL_SHOTS, needs_real_shots
 
 AUTHOR = """DistanceToGoal,AngleToGoal,DistanceToOpp,OppX,OppY,OppVx,OppVy,VTowardsBall,Success
@@ -187,3 +193,28 @@ def test_of_the_goalkeepers_speed_and_its_component_either_gives_the_other(tmp_p
     table = read_shots(file)
     assert table.column("v_towards_ball").to_pylist() == [0.25, -0.25, 0.0]
     assert table.column("opp_vy").to_pylist() == [0.25, 0.25, 0.25]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("ending", ["parquet", "csv", "author.csv"])
+def test_mutated_shots_are_read_or_refused(ending: str, tmp_path: Path) -> None:
+    rng, read = random.Random(21), 0
+    path = tmp_path / f"shots.{ending}"
+    if ending == "author.csv":
+        path.write_text(AUTHOR)
+    else:
+        write_shots(pa.Table.from_pylist([_row(seed=seed) for seed in range(20)], schema=SCHEMA), path)
+    original = path.read_bytes()
+    before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    for _ in range(count(10_000)):
+        path.write_bytes(mutated(original, rng))
+        begun = time.process_time()
+        try:
+            read += read_shots(path).num_rows > 0
+        except ShotDataError as error:
+            said = str(error)
+            assert said.startswith(str(path))
+            assert "\n" not in said
+        assert time.process_time() - begun < 10.0
+    assert resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before < 200_000
+    print(f"{read} of {count(10_000)} were read")

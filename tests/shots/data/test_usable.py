@@ -11,7 +11,7 @@ from typer.testing import CliRunner
 
 from robobt.cli import app
 from robobt.shots.data.files import read_usable_shots, write_shots
-from robobt.shots.data.problems import ShotDataError
+from robobt.shots.data.schema import ShotDataError
 from tests.shots.made_up import made_up_table
 
 HEAD = "DistanceToGoal,AngleToGoal,RobotVx,RobotVy,OppX,OppY,OppVx,OppVy,Success"

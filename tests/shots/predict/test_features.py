@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from robobt.shots.data import read_shots, shot_inputs
-from robobt.shots.predict.features import motion_features, pair_features
+from robobt.shots.predict.predictors import motion_features, pair_features
 from robobt.world.features import SCENE_HEAD, SHOT_SCENE, shot_features
 from tests.shots.made_up import made_up_table
 from tests.shots.real_data import REAL_SHOTS, needs_real_shots

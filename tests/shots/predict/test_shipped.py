@@ -13,8 +13,7 @@ from robobt.models.file import ModelError
 from robobt.models.policy import load_policy
 from robobt.shots.data.files import write_shots
 from robobt.shots.data.inputs import goals, shot_inputs
-from robobt.shots.data.problems import ShotDataError
-from robobt.shots.data.schema import GOALKEEPERS, SCHEMA
+from robobt.shots.data.schema import GOALKEEPERS, SCHEMA, ShotDataError
 from robobt.shots.predict.scene_network import SceneNetwork
 from robobt.shots.predict.score import measured, predicted_by
 from robobt.shots.predict.shipped import train_shipped

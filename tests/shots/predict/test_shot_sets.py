@@ -4,7 +4,7 @@ import pyarrow as pa
 import pytest
 
 from robobt.shots.data.files import write_shots
-from robobt.shots.data.problems import ShotDataError
+from robobt.shots.data.schema import ShotDataError
 from robobt.shots.predict.shot_sets import load_shot_sets
 from tests.shots.made_up import made_up_table
 

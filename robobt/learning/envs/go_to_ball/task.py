@@ -17,8 +17,17 @@ from robobt.learning.envs.go_to_ball.settings import (
     GoToBallSettings,
 )
 from robobt.learning.envs.go_to_ball.starts import columns_of, go_to_ball_starts
-from robobt.learning.envs.judging import Ledger, Report, begin_tick, end_tick, is_over, parameters, report_of
-from robobt.learning.envs.progress import PROGRESS, EpisodeProgress
+from robobt.learning.envs.judging import (
+    PROGRESS,
+    EpisodeProgress,
+    Ledger,
+    Report,
+    begin_tick,
+    end_tick,
+    is_over,
+    parameters,
+    report_of,
+)
 from robobt.learning.envs.scripted import BEHIND, drive_and_face, drive_to_shoot, freest_way, steady_gain
 from robobt.learning.envs.starts import split, start_parts
 from robobt.learning.envs.task import EpisodeEnds, FloatArray, IntArray

@@ -12,7 +12,7 @@ from typing import Protocol
 from pydantic import Field
 
 from robobt.config.validation import Settings
-from robobt.learning.envs.progress import EpisodeProgress
+from robobt.learning.envs.judging import EpisodeProgress
 from robobt.world.compiled import compilable
 from robobt.world.field import FieldGeometry
 from robobt.world.records import Ball, Robot

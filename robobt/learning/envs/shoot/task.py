@@ -11,6 +11,8 @@ import numpy as np
 from robobt.learning.envs.arena_task import ArenaTask
 from robobt.learning.envs.bounds import BUMP, farthest, seen_speed, seen_turn
 from robobt.learning.envs.judging import (
+    PROGRESS,
+    EpisodeProgress,
     Ledger,
     Report,
     begin_tick,
@@ -20,7 +22,6 @@ from robobt.learning.envs.judging import (
     parameters,
     report_of,
 )
-from robobt.learning.envs.progress import PROGRESS, EpisodeProgress
 from robobt.learning.envs.scripted import steady_gain, turn_and_kick
 from robobt.learning.envs.shoot.rewards import ShootReward, ShootTerms, reward
 from robobt.learning.envs.shoot.settings import ShootSettings

@@ -6,8 +6,16 @@ from enum import IntEnum
 from math import hypot, inf, isnan, nan, sqrt
 from typing import NamedTuple, Protocol
 
-from robobt.learning.envs.judging import Ledger, Report, begin_tick, end_tick, goal_of, is_over
-from robobt.learning.envs.progress import PROGRESS, EpisodeProgress
+from robobt.learning.envs.judging import (
+    PROGRESS,
+    EpisodeProgress,
+    Ledger,
+    Report,
+    begin_tick,
+    end_tick,
+    goal_of,
+    is_over,
+)
 from robobt.learning.envs.soccer.rewards import (
     REWARD_MEMORY,
     RewardMemory,

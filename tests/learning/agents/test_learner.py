@@ -1,4 +1,4 @@
-"""The optimiser takes the steps of torch's own, and imports less."""
+"""Adam over whole networks, and means of what a learner reports."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 import torch
 
+from robobt.learning.agents.learner import Adam, Diagnostics, restore_state, state_of
 from robobt.learning.agents.nstep import Transitions
-from robobt.learning.agents.optimiser import Adam, restore_state, state_of
 from tests.learning.tiny import learn, small_agent
 
 
@@ -73,3 +73,28 @@ def test_a_learner_does_without_torchs_compiler(monkeypatch: pytest.MonkeyPatch)
         torch.optim.Adam(weights())
     row = np.zeros((8, 1))
     learn(small_agent(1, 1), Transitions(row, row, row[:, 0], row[:, 0], row), 2)
+
+
+def test_each_name_has_the_mean_of_its_own_values():
+    it = Diagnostics()
+    it.add(loss=torch.tensor(1.0), norm=torch.tensor(4.0))
+    it.add(loss=torch.tensor(3.0))
+    assert it.means() == {"loss": 2.0, "norm": 4.0}
+    it.clear()
+    assert it.means() == {}
+
+
+def test_what_is_added_is_not_changed():
+    it, first = Diagnostics(), torch.tensor(1.0)
+    it.add(loss=first)
+    it.add(loss=torch.tensor(3.0))
+    assert first == 1.0
+
+
+def test_restored_it_goes_on_where_it_was():
+    it, again = Diagnostics(), Diagnostics()
+    it.add(loss=torch.tensor(0.1), norm=torch.tensor(0.2, dtype=torch.float64))
+    again.restore(it.state())
+    for each in (it, again):
+        each.add(loss=torch.tensor(0.7))
+    assert again.means() == it.means()
