@@ -8,6 +8,7 @@ from typing import Annotated
 import numpy as np
 import typer
 
+from benchmarks.blind.ahead import misses_ahead
 from benchmarks.blind.field import draw_field, play
 from benchmarks.blind.scores import Score, score, summed
 from robobt.cli.common import MAX_SEED, Json, Progress, Workers, console, cores, print_json, say, table
@@ -16,7 +17,6 @@ from robobt.engines.run import run_tasks
 from robobt.engines.work import Work
 from robobt.identify import identify
 from robobt.identify.ball import model_of
-from robobt.identify.ball_ahead import misses_ahead
 from robobt.statistics import wilson_interval
 from robobt.world.ball_model import DEFAULT_BALL
 

@@ -9,7 +9,6 @@ from collections.abc import Callable, Mapping
 from robobt.league.connection import Connection, LeagueError
 from robobt.league.feed import Feed
 from robobt.league.known_field import KnownField
-from robobt.league.wire.links import Link
 from robobt.league.wire.steps import StepLink
 from robobt.sim.settings import SimSettings
 from robobt.world.field import FieldGeometry
@@ -32,14 +31,14 @@ class StepFeed(Feed):
 
     def __init__(
         self,
+        link: StepLink,
+        period: float,
         connection: Connection,
         field: FieldGeometry | None,
         settings: SimSettings,
         limits: Mapping[RobotId, RobotLimits],
         clock: Callable[[], float],
         known: KnownField | None,
-        link: StepLink,
-        period: float,
     ) -> None:
         super().__init__(connection, field, settings, limits, clock, known)
         self._link, self._step = link, period
@@ -87,19 +86,3 @@ class StepFeed(Feed):
                     "without follow_referee"
                 )
             select.select(self._sources, [], [], left)
-
-
-def feed_of(
-    link: Link,
-    period: float,
-    connection: Connection,
-    field: FieldGeometry | None,
-    settings: SimSettings,
-    limits: Mapping[RobotId, RobotLimits],
-    clock: Callable[[], float],
-    known: KnownField | None,
-) -> Feed:
-    """Return the feed that goes with a link; other arguments are those of :class:`Feed`."""
-    if isinstance(link, StepLink):
-        return StepFeed(connection, field, settings, limits, clock, known, link, period)
-    return Feed(connection, field, settings, limits, clock, known)

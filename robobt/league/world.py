@@ -12,14 +12,15 @@ from dataclasses import replace
 from robobt.config.closing import Closing
 from robobt.league.claims import RobotClaims
 from robobt.league.connection import Connection
-from robobt.league.feed import ALL_CAMERAS
+from robobt.league.feed import ALL_CAMERAS, Feed
 from robobt.league.known_field import KnownField
 from robobt.league.pacing import FrameBeat
 from robobt.league.placing import FieldPlacer
-from robobt.league.step_feed import feed_of
+from robobt.league.step_feed import StepFeed
 from robobt.league.watch import MatchWatch
 from robobt.league.wire.commands import clamp_command
 from robobt.league.wire.packets import PacketCounts
+from robobt.league.wire.steps import StepLink
 from robobt.match.referee.events import RefereeEvent
 from robobt.signals import uninterrupted
 from robobt.sim.settings import SimSettings
@@ -109,7 +110,11 @@ class LeagueWorld(World, Closing):
             self._link = here.link()
             opened.callback(self._link.close)
             self._clock = clock = self._link.clock or clock
-            self._feed = feed_of(self._link, period, here, field, self.settings, self._limits, clock, known)
+            with_what = here, field, self.settings, self._limits, clock, known
+            if isinstance(self._link, StepLink):
+                self._feed: Feed = StepFeed(self._link, period, *with_what)
+            else:
+                self._feed = Feed(*with_what)
             opened.callback(self._feed.close)
             self._opened = opened.pop_all()
         if claims.taken:

@@ -10,7 +10,7 @@ from PIL import Image, ImageDraw
 
 from robobt.config.atomic import replacing
 from robobt.config.errors import RobobtError
-from robobt.match.recording import RecordedNode, Recording
+from robobt.match.recording import Recording
 from robobt.world.painting import Painter, font
 from robobt.world.state import RobotId
 
@@ -81,11 +81,7 @@ class RecordingPainter:
             colour = _STATUS_COLOURS.get(letter)
             pen.ellipse((left, middle - 4, left + 8, middle + 4), fill=colour, outline=colour or _FAINT)
             ink = _FAINT if colour is None else _INK
-            pen.text((left + 14, middle), _name(node), fill=ink, font=font(13), anchor="lm")
-
-
-def _name(node: RecordedNode) -> str:
-    return " ".join(node.name.split())
+            pen.text((left + 14, middle), " ".join(node.name.split()), fill=ink, font=font(13), anchor="lm")
 
 
 def tick_of(recording: Recording, time: float | None, otherwise: int) -> int:

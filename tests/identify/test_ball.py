@@ -7,8 +7,8 @@ from functools import cache
 import numpy as np
 import pytest
 
+from benchmarks.blind.ahead import misses_ahead
 from robobt.identify.ball import BallEstimate, identify_ball, model_of
-from robobt.identify.ball_ahead import misses_ahead
 from robobt.identify.free_ball import stretches
 from robobt.identify.kicks import identify_kicks
 from robobt.identify.observations import Observations

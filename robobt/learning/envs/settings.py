@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Annotated, Literal, Self
+from typing import Annotated, Any, Literal, Self
 
 from pydantic import BeforeValidator, Field, model_validator
 
@@ -16,6 +16,12 @@ from robobt.world.limits import RobotLimits
 
 Span = Annotated[tuple[float, float], Field(description="least and most")]
 """A range for uniform draws."""
+
+
+def weight(default: float, description: str) -> Any:
+    """Return the field of the weight of a term of a reward, from 0 to 10,000."""
+    return Field(default, ge=0, le=1e4, description=description)
+
 
 HARDWARE_CHALLENGE = FieldGeometry(
     length=6.0, width=4.0, goal_width=0.7, defense_width=2.0, defense_depth=0.8
@@ -53,17 +59,14 @@ def by_name(named: Mapping[str, object], noun: str) -> BeforeValidator:
 
 
 def _simulator(value: object) -> object:
-    if isinstance(value, str) or (isinstance(value, Mapping) and not _complete(value)):
+    # What holds all fields is a settings object in serialised form.
+    whole = isinstance(value, Mapping) and set(SimSettings.model_fields) <= set(value)
+    if isinstance(value, str | Mapping) and not whole:
         try:
             return settings_from(value)
         except KeyError as error:
             raise ValueError(error.args[0]) from error
     return value
-
-
-def _complete(value: Mapping[str, object]) -> bool:
-    """Return whether the mapping is a settings object in serialised form."""
-    return set(SimSettings.model_fields) <= set(value)
 
 
 class NoiseSettings(Settings):

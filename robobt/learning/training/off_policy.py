@@ -10,11 +10,7 @@ from robobt.learning.agents.nstep import NStep
 from robobt.learning.agents.replay import PrioritisedReplay, ReplayBuffer
 from robobt.learning.training.checkpoint import Arrays, RunState
 from robobt.learning.training.demonstrations import demonstrations_for
-from robobt.learning.training.problems import Problem
-from robobt.learning.training.progress import OnProgress, RunClock
 from robobt.learning.training.run import TrainError, TrainingRun, part
-from robobt.learning.training.run_folder import RunFolder
-from robobt.learning.training.settings import TrainSettings
 
 
 class OffPolicyRun(TrainingRun):
@@ -23,15 +19,8 @@ class OffPolicyRun(TrainingRun):
     _agent: DDPG
     _returns: NStep
 
-    def __init__(
-        self,
-        settings: TrainSettings,
-        problem: Problem,
-        folder: RunFolder,
-        clock: RunClock,
-        on_progress: OnProgress | None,
-    ) -> None:
-        super().__init__(settings, problem, folder, clock, on_progress)
+    def _set_up(self) -> None:
+        settings, problem = self._settings, self._problem
         collection = settings.collection
         scale = problem.scale if settings.agent.scale_observations else (1.0,) * len(problem.scale)
         self._agent = DDPG(settings.agent, scale, problem.smoothed, self._agent_seed)

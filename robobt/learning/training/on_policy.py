@@ -13,10 +13,8 @@ from robobt.learning.agents.rollout import Rollout
 from robobt.learning.envs import make_task
 from robobt.learning.training.checkpoint import Arrays, RunState
 from robobt.learning.training.imitation import Lesson
-from robobt.learning.training.problems import Problem
-from robobt.learning.training.progress import OnProgress, RunClock
 from robobt.learning.training.run import TrainError, TrainingRun, part
-from robobt.learning.training.run_folder import ACTOR, RunFolder, load_actor, read_settings
+from robobt.learning.training.run_folder import ACTOR, load_actor, read_settings
 from robobt.learning.training.settings import TrainSettings
 
 
@@ -25,15 +23,8 @@ class OnPolicyRun(TrainingRun):
 
     _agent: PPO
 
-    def __init__(
-        self,
-        settings: TrainSettings,
-        problem: Problem,
-        folder: RunFolder,
-        clock: RunClock,
-        on_progress: OnProgress | None,
-    ) -> None:
-        super().__init__(settings, problem, folder, clock, on_progress)
+    def _set_up(self) -> None:
+        settings, problem = self._settings, self._problem
         self._agent = PPO(
             settings.ppo,
             problem.scale,

@@ -68,6 +68,11 @@ class TrainingRun(ABC):
         self._reporter = Reporter(settings, on_progress, clock, self._selection)
         self._saved_at = time.monotonic()
         self._paced_from = 0, 0.0
+        self._set_up()
+
+    @abstractmethod
+    def _set_up(self) -> None:
+        """Make the agent, and what else the run needs."""
 
     @abstractmethod
     def _advance(self) -> None:

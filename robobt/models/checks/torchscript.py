@@ -59,7 +59,7 @@ def check_arguments(module: Any) -> None:
     for node in nodes_of(module._get_method("forward").inlined_graph):
         kind = node.kind()
         if kind == "aten::format":
-            if any(_holds_tensors(value) for value in node.inputs()):
+            if any("Tensor" in value.type().annotation_str for value in node.inputs()):
                 raise ModelError(f"prints a tensor{_place(node)}")
             continue
         if not kind.startswith("aten::") or node.schema() == "(no schema)":
@@ -81,10 +81,6 @@ def check_arguments(module: Any) -> None:
             divisor = known([*node.inputs()][1])
             if not isinstance(divisor, int) or divisor in (0, -1):
                 raise ModelError(f"{kind} divides an integer by what may be 0 or -1{_place(node)}")
-
-
-def _holds_tensors(value: Value) -> bool:
-    return "Tensor" in value.type().annotation_str
 
 
 def _answers_integer(node: Node) -> bool:

@@ -63,8 +63,9 @@ def against_fitted(attempt: Attempt, population: Population) -> Attempt:
     traits = population.sample(rng)
     scenario = attempt.scenario
     (shooter, *_), (keeper, *others) = scenario.robots.blue, scenario.robots.yellow
+    told = {name: getattr(traits, name) for name in ("max_speed", "acceleration", "braking", "offset")}
     keeper = keeper.model_copy(
-        update={"play": "fitted_goalkeeper", "params": _params(traits), "limits": robot_limits(traits)}
+        update={"play": "fitted_goalkeeper", "params": told, "limits": robot_limits(traits)}
     )
     params: dict[str, object] = {**shooter.params, "shot_speed": traits.kick_speed}
     velocities: dict[RobotId, Point] = {}
@@ -147,7 +148,3 @@ def _at_kick(field: FieldGeometry, ball: Point, traits: Traits, rng: np.random.G
         keeper,
         (along * cos(aim) - towards * sin(aim), along * sin(aim) + towards * cos(aim)),
     )
-
-
-def _params(traits: Traits) -> dict[str, object]:
-    return {name: getattr(traits, name) for name in ("max_speed", "acceleration", "braking", "offset")}

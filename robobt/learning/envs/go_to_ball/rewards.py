@@ -9,9 +9,8 @@ from __future__ import annotations
 from math import exp, hypot, pi, sqrt
 from typing import Protocol
 
-from pydantic import Field
-
 from robobt.config.validation import Settings
+from robobt.learning.envs.settings import weight
 from robobt.learning.envs.task import FloatArray
 from robobt.world.compiled import compilable
 from robobt.world.geometry import wrap_angle
@@ -25,25 +24,13 @@ _BELL = 1.0 / sqrt(2.0 * pi)
 class GoToBallReward(Settings):
     """Weights of the reward's terms."""
 
-    contact: float = Field(100.0, ge=0, le=1e4, description="Eq. 7: once, on reaching the ball")
-    distance: float = Field(1.0, ge=0, le=100, description="times 5/sqrt(2 pi) exp(-d^2/2) - 2, Eq. 8")
-    orientation: float = Field(
-        1.0, ge=0, le=100, description="times 1/sqrt(2 pi) exp(-2 |theta|/pi^2), Eq. 9"
-    )
-    closing: float = Field(
-        0.0,
-        ge=0,
-        le=100,
-        description="times the closing speed to its target, relative to the ball [m/s]",
-    )
-    time: float = Field(0.0, ge=0, le=100, description="subtracted in every tick")
-    touched: float = Field(0.0, ge=0, le=1e4, description="subtracted when another robot is touched")
-    near: float = Field(
-        0.0,
-        ge=0,
-        le=100,
-        description="subtracted near another robot, falling linearly with the gap to 0 at 0.2 m",
-    )
+    contact: float = weight(100.0, "Eq. 7: once, on reaching the ball")
+    distance: float = weight(1.0, "times 5/sqrt(2 pi) exp(-d^2/2) - 2, Eq. 8")
+    orientation: float = weight(1.0, "times 1/sqrt(2 pi) exp(-2 |theta|/pi^2), Eq. 9")
+    closing: float = weight(0.0, "times the closing speed to its target, relative to the ball [m/s]")
+    time: float = weight(0.0, "subtracted in every tick")
+    touched: float = weight(0.0, "subtracted when another robot is touched")
+    near: float = weight(0.0, "subtracted near another robot, falling linearly with the gap to 0 at 0.2 m")
 
 
 class GoToBallTerms(Protocol):

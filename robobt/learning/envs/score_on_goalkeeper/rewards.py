@@ -13,6 +13,7 @@ from pydantic import Field
 
 from robobt.config.validation import Settings
 from robobt.learning.envs.judging import EpisodeProgress
+from robobt.learning.envs.settings import weight
 from robobt.world.compiled import compilable
 from robobt.world.field import FieldGeometry
 from robobt.world.records import Ball, Robot
@@ -30,28 +31,15 @@ _REACH_UNCERTAINTY = 0.3
 class ScoreReward(Settings):
     """Weights of the reward's terms."""
 
-    goal: float = Field(5.0, ge=0, le=1e3, description="on a goal")
-    lost: float = Field(0.5, ge=0, le=1e3, description="subtracted if the episode ends without a goal")
-    time: float = Field(0.005, ge=0, le=10, description="subtracted in every tick")
-    aimed: float = Field(0.1, ge=0, le=100, description="on a kick that will go between the posts")
-    unreached: float = Field(
-        2.0,
-        ge=0,
-        le=100,
-        description="on such a kick, scaled by how far it passes out of the goalkeeper's reach",
-    )
-    miss: float = Field(
-        0.2, ge=0, le=100, description="subtracted for a kick that will not go between the posts"
-    )
-    approach: float = Field(
-        0.5, ge=0, le=10, description="for each metre that the robot gets nearer to the ball"
-    )
-    advance: float = Field(
-        0.6, ge=0, le=10, description="for each metre that the robot gets nearer to the goal"
-    )
-    facing: float = Field(
-        0.5, ge=0, le=10, description="for a ball in the mouth, times the cosine of the heading to the goal"
-    )
+    goal: float = weight(5.0, "on a goal")
+    lost: float = weight(0.5, "subtracted if the episode ends without a goal")
+    time: float = weight(0.005, "subtracted in every tick")
+    aimed: float = weight(0.1, "on a kick that will go between the posts")
+    unreached: float = weight(2.0, "on such a kick, scaled by its distance beyond the goalkeeper's reach")
+    miss: float = weight(0.2, "subtracted for a kick that will not go between the posts")
+    approach: float = weight(0.5, "for each metre that the robot gets nearer to the ball")
+    advance: float = weight(0.6, "for each metre that the robot gets nearer to the goal")
+    facing: float = weight(0.5, "for a ball in the mouth, times the cosine of the heading to the goal")
     doubt: float = Field(
         0.25, ge=0, le=1, description="value of a kick at the limit of the goalkeeper's reach"
     )

@@ -13,6 +13,7 @@ from pydantic import Field
 
 from robobt.config.validation import Settings
 from robobt.learning.envs.judging import EpisodeProgress
+from robobt.learning.envs.settings import weight
 from robobt.world.compiled import compilable
 from robobt.world.field import FieldGeometry
 from robobt.world.geometry import wrap_angle
@@ -22,20 +23,16 @@ from robobt.world.records import Ball, Robot
 class ShootReward(Settings):
     """Weights of the reward's terms."""
 
-    face_goal: float = Field(1.0, ge=0, le=100, description="times (alpha - beta) |v_ball|, Eq. 12")
+    face_goal: float = weight(1.0, "times (alpha - beta) |v_ball|, Eq. 12")
     inside_share: float = Field(0.05, ge=0, le=1, description="Eq. 12: factor where alpha >= beta")
-    kick: float = Field(10.0, ge=0, le=1e3, description="Eq. 13: once, on kicking while facing the goal")
+    kick: float = weight(10.0, "Eq. 13: once, on kicking while facing the goal")
     kick_counts: Literal["pressed", "fired"] = Field(
         "pressed",
         description="the kick in Eq. 13: first kick action, even without the ball, or the kicker's firing",
     )
-    waiting: float = Field(
-        0.25, ge=0, le=10, description="Eq. 13: subtracted in a tick before the kick or not facing the goal"
-    )
-    goal: float = Field(20.0, ge=0, le=1e3, description="on a goal, instead of all other terms")
-    time: float = Field(
-        0.0, ge=0, le=10, description="subtracted in every tick that does not end the episode"
-    )
+    waiting: float = weight(0.25, "Eq. 13: subtracted in a tick before the kick or not facing the goal")
+    goal: float = weight(20.0, "on a goal, instead of all other terms")
+    time: float = weight(0.0, "subtracted in every tick that does not end the episode")
 
 
 SHOOT_REWARDS: dict[str, ShootReward] = {

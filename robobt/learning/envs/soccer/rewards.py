@@ -12,6 +12,7 @@ from typing import Protocol
 from pydantic import Field
 
 from robobt.config.validation import Settings
+from robobt.learning.envs.settings import weight
 from robobt.sim.records import Records
 from robobt.world.compiled import compilable, record_dtype
 from robobt.world.field import FieldGeometry
@@ -30,41 +31,16 @@ _BLOCKED = 0.2
 class SoccerReward(Settings):
     """Weights of the reward's terms: team terms, equal for all its robots, and individual terms."""
 
-    goal: float = Field(
-        5.0, ge=0, le=1e3, description="team: for a goal, and subtracted for a goal against it"
-    )
-    fault: float = Field(
-        1.0,
-        ge=0,
-        le=1e3,
-        description="team: subtracted for a ball out or lost or a rule broken; the other team earns it",
-    )
-    passed: float = Field(0.0, ge=0, le=1e3, description="team: for a pass that has reached a team-mate")
-    holding: float = Field(
-        0.0, ge=0, le=10, description="team: for every tick with the ball in the mouth of one of its robots"
-    )
-    advance: float = Field(
-        0.3, ge=0, le=10, description="team: for each metre that the ball gets nearer to the goal"
-    )
-    time: float = Field(0.002, ge=0, le=10, description="team: subtracted in every tick")
-    approach: float = Field(
-        0.3, ge=0, le=10, description="own: for each metre that the robot gets nearer to the ball"
-    )
-    shot: float = Field(
-        0.5,
-        ge=0,
-        le=100,
-        description="own: for a kick that will go between the posts, the first four of an episode",
-    )
-    sent: float = Field(
-        0.0,
-        ge=0,
-        le=100,
-        description="own: for a kick at a team-mate, scaled by aim; 0 if an opponent blocks the lane",
-    )
-    crash: float = Field(
-        0.02, ge=0, le=10, description="own: subtracted in every tick in which it touches a robot"
-    )
+    goal: float = weight(5.0, "team: for a goal, and subtracted for a goal against it")
+    fault: float = weight(1.0, "team: subtracted for a ball out or lost or a broken rule; the others earn it")
+    passed: float = weight(0.0, "team: for a pass that has reached a team-mate")
+    holding: float = weight(0.0, "team: for every tick with the ball in the mouth of one of its robots")
+    advance: float = weight(0.3, "team: for each metre that the ball gets nearer to the goal")
+    time: float = weight(0.002, "team: subtracted in every tick")
+    approach: float = weight(0.3, "own: for each metre that the robot gets nearer to the ball")
+    shot: float = weight(0.5, "own: for a kick that will go between the posts, the first four of an episode")
+    sent: float = weight(0.0, "own: for a kick at a team-mate, scaled by aim; 0 if the lane is blocked")
+    crash: float = weight(0.02, "own: subtracted in every tick in which it touches a robot")
     shared: float = Field(
         0.0, ge=0, le=1, description="share of the own terms that is replaced by the team's mean"
     )
