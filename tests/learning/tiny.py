@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 import torch
@@ -12,8 +14,10 @@ from robobt.learning.agents.replay import ReplayBuffer
 from robobt.learning.agents.settings import AgentSettings
 from robobt.learning.envs import StepResult
 from robobt.learning.training.problems import Problem, split_seed
-from robobt.learning.training.results import Evaluation
+from robobt.learning.training.progress import TrainingProgress
+from robobt.learning.training.results import Evaluation, TrainResult
 from robobt.learning.training.settings import TrainSettings, settings_of
+from robobt.learning.training.train import train
 
 torch.set_num_threads(1)
 
@@ -106,6 +110,22 @@ def slide_settings(**changes) -> TrainSettings:
         group, _, key = name.rpartition("__")
         (data[group] if group else data)[key] = value
     return settings_of(data, "tiny")
+
+
+class BrokenOffError(Exception):
+    """Breaks a run off."""
+
+
+def broken_off_and_resumed(settings: TrainSettings, folder: Path, steps: int) -> TrainResult:
+    """Break a run off after some steps; return what it comes to when it is resumed."""
+
+    def stop(progress: TrainingProgress) -> None:
+        if progress.steps >= steps:
+            raise BrokenOffError
+
+    with pytest.raises(BrokenOffError):
+        train(settings, folder, on_progress=stop)
+    return train(settings, folder, resume=True)
 
 
 def draw_no_curves(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -8,6 +8,7 @@ import pytest
 from robobt.challenges.cooperation import BALL_START, PLACES, CooperationJudge
 from robobt.challenges.handover import JUNIOR_ROW, MAJOR_ROW
 from robobt.learning import TASKS
+from robobt.learning.envs import run_starts
 from robobt.learning.envs.cooperation.task import CooperationSettings, CooperationTask
 from robobt.learning.envs.starts import places_of, start_parts
 from robobt.learning.training.teachers import script
@@ -116,13 +117,7 @@ def test_the_script_decides_for_both_robots_in_an_evaluation() -> None:
 @pytest.mark.integration
 def test_the_script_scores() -> None:
     task = made(32)
-    observation, policy = task.reset(seed=5), task.script()
-    succeeded: list[bool] = []
-    while len(succeeded) < 32:
-        observation = task.step(policy(observation)).observation
-        if task.ended is not None:
-            succeeded += task.ended.success.tolist()
-    assert np.mean(succeeded) > 0.8
+    assert run_starts(task, task.script(), task.sample_starts(5, 32), seed=5).success.mean() > 0.8
 
 
 @pytest.mark.parametrize(

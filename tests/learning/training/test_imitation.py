@@ -25,6 +25,7 @@ from robobt.learning.training.train import train
 from robobt.models.actions import SCORE_ACTION, command_of
 from robobt.models.policy import load_policy
 from robobt.sim.world import command_row
+from tests.learning.tiny import broken_off_and_resumed
 from tests.learning.training.test_several_robots import TINY
 
 MODEL = "small3v3_ppo"
@@ -177,17 +178,7 @@ def test_a_run_that_imitates_and_is_broken_off_ends_as_if_it_had_not_been(
     }
     settings = load_settings("small3v3", "fast", TINY | changes)
     whole = train(settings, tmp_path / "whole")
-
-    class BrokenOffError(Exception):
-        """Breaks a run off."""
-
-    def stop(progress: object) -> None:
-        if getattr(progress, "steps", 0) >= 240:
-            raise BrokenOffError
-
-    with pytest.raises(BrokenOffError):
-        train(settings, tmp_path / "broken", on_progress=stop)
-    resumed = train(settings, tmp_path / "broken", resume=True)
+    resumed = broken_off_and_resumed(settings, tmp_path / "broken", 240)
     assert resumed.figures["weights"] == whole.figures["weights"]
     first, last = whole.validations
     assert "imitation_loss" in first.losses

@@ -22,6 +22,7 @@ from robobt.learning.training.run_folder import load_actor
 from robobt.learning.training.setting_groups import PoolSettings, Script
 from robobt.learning.training.settings import SettingsError, load_settings, stage_after
 from robobt.learning.training.train import train
+from tests.learning.tiny import broken_off_and_resumed
 from tests.learning.training.test_several_robots import TINY
 
 SELF_PLAY = {
@@ -120,17 +121,7 @@ def test_shares_that_are_rounded_up_take_no_more_than_there_are(scripts: tuple[S
 def test_a_run_against_its_past_selves_that_is_broken_off_ends_as_if_it_had_not_been(tmp_path: Path) -> None:
     settings = load_settings("duel", "self_play", SELF_PLAY)
     whole = train(settings, tmp_path / "whole")
-
-    class BrokenOffError(Exception):
-        """Breaks a run off."""
-
-    def stop(progress: object) -> None:
-        if getattr(progress, "steps", 0) >= 360:
-            raise BrokenOffError
-
-    with pytest.raises(BrokenOffError):
-        train(settings, tmp_path / "broken", on_progress=stop)
-    resumed = train(settings, tmp_path / "broken", resume=True)
+    resumed = broken_off_and_resumed(settings, tmp_path / "broken", 360)
     assert resumed.figures["weights"] == whole.figures["weights"]
     kept = [sorted((tmp_path / run / "past").iterdir()) for run in ("whole", "broken")]
     assert [path.name for path in kept[0]] == ["0000000000.pt", "0000000240.pt", "0000000480.pt"]

@@ -161,12 +161,6 @@ def test_a_wrong_file_is_one_line_too(tmp_path, content, said):
 def test_an_old_name_of_a_setting_is_an_error_that_says_the_new_one(tmp_path, changes, said):
     with pytest.raises(SettingsError, match=said):
         load_settings("go_to_ball", changes=changes)
-    data = {"extends": "fast"}
-    for name, value in changes.items():
-        assign(data, name.split("."), value, name)
-    (tmp_path / "mine.yaml").write_text(write_yaml(data))
-    with pytest.raises(SettingsError, match=rf"mine\.yaml: {said}"):
-        load_settings("go_to_ball", str(tmp_path / "mine.yaml"))
     data = load_settings("go_to_ball").model_dump(mode="json")
     for name, value in changes.items():
         assign(data, name.split("."), value, name)

@@ -21,6 +21,7 @@ from robobt.skills import Duel, Goalkeeper, LearnedSkill, Score
 from robobt.skills.ball.policy_skill import PolicySkill
 from robobt.testing import frame, robot
 from robobt.tree import Status
+from tests.learning.tiny import broken_off_and_resumed
 from tests.skills.fixed_world import Alone
 
 TINY = {
@@ -46,17 +47,7 @@ def test_a_run_of_several_learners_that_is_broken_off_ends_as_if_it_had_not_been
 ) -> None:
     settings = load_settings("small3v3", "fast", TINY | {"ppo.critic": critic})
     whole = train(settings, tmp_path / "whole")
-
-    class BrokenOffError(Exception):
-        """Breaks a run off."""
-
-    def stop(progress: object) -> None:
-        if getattr(progress, "steps", 0) >= 240:
-            raise BrokenOffError
-
-    with pytest.raises(BrokenOffError):
-        train(settings, tmp_path / "broken", on_progress=stop)
-    resumed = train(settings, tmp_path / "broken", resume=True)
+    resumed = broken_off_and_resumed(settings, tmp_path / "broken", 240)
     assert resumed.figures["weights"] == whole.figures["weights"]
     # What is kept of it is the policy, which is told what a robot sees, whatever the critic was told.
     assert len(load_run(tmp_path / "whole").actor.build["scale"]) == 19 + 4 * 5

@@ -13,9 +13,9 @@ from tensorboard.backend.event_processing.event_accumulator import EventAccumula
 
 from robobt.learning import TASKS
 from robobt.learning.training import checkpoint
-from robobt.learning.training.problems import problem_of, split_seed, training_seed
+from robobt.learning.training.problems import split_seed, training_seed
 from robobt.learning.training.run_folder import CHECKPOINT, RunFolderError, load_actor, load_run
-from robobt.learning.training.settings import evaluated_on, load_settings
+from robobt.learning.training.settings import load_settings
 from robobt.learning.training.train import TrainError, train
 from tests.learning.tiny import SLIDE, Slide, slide_settings
 
@@ -217,14 +217,6 @@ def test_a_folder_with_something_else_is_not_written_to(tmp_path):
     assert [path.name for path in tmp_path.iterdir()] == ["thesis.tex"]
 
 
-def test_a_run_that_failed_before_its_first_evaluation_is_simply_started_again(tmp_path):
-    with pytest.raises(KilledError):
-        train(slide_settings(), tmp_path, problem=breaking_after(10))
-    result = train(slide_settings(steps=480), tmp_path, problem=SLIDE)
-    assert result.settings.steps == 480
-    assert load_run(tmp_path).settings == result.settings
-
-
 def test_a_run_that_was_stopped_before_its_first_checkpoint_is_simply_started_again(tmp_path):
     with pytest.raises(KilledError):
         train(slide_settings(), tmp_path, problem=breaking_after(10))
@@ -389,44 +381,6 @@ def test_a_short_run_of_a_real_task(tmp_path, task):
         assert sum(each.terms.values()) == pytest.approx(each.mean_return)
     for name, value in again.validations[-1].terms.items():
         assert events.Scalars(f"reward/{name}")[-1].value == pytest.approx(value)
-
-
-def test_a_run_against_opponents_is_resumed_bit_for_bit(tmp_path):
-    changes = {
-        "steps": 512,
-        "ppo.hidden_sizes": [8],
-        "ppo.num_steps": 8,
-        "ppo.minibatch_size": 32,
-        "collection.num_envs": 8,
-        "evaluation.every": 256,
-        "evaluation.starts": 8,
-        "evaluation.held_out": 8,
-        "rebuild_every": 128,
-        "checkpoint_seconds": 0.0,
-        "stages": [],
-        "tensorboard": False,
-    }
-    settings = load_settings("score_on_goalkeeper", changes=changes)
-    whole = train(settings, tmp_path / "whole")
-    problem = problem_of(settings.environment, evaluated_on(settings))
-
-    def dying(n):
-        task, left = problem.make(n), iter(range(45))
-        step = task.step
-
-        def until_killed(actions):
-            if next(left, None) is None:
-                raise KilledError
-            return step(actions)
-
-        task.step = until_killed
-        return task
-
-    with pytest.raises(KilledError):
-        train(settings, tmp_path / "broken", problem=replace(problem, make=dying))
-    broken = train(settings, tmp_path / "broken", resume=True)
-    assert broken.figures["weights"] == whole.figures["weights"]
-    assert broken.figures["held_out"] == whole.figures["held_out"]
 
 
 @pytest.mark.slow

@@ -34,6 +34,8 @@ LARGE = [
     -(2**63) + 1,
 ]
 
+FOREIGN = ["from_file", "fill_", "save", "load", "copy_", "set_", "resize_", "rand", "tensor", "tile", "eval"]
+
 
 def torchscript_file(folder: Path, seed: int) -> Path:
     """A file in TorchScript."""
@@ -258,6 +260,10 @@ class _Script:
             ),
         )
 
+    def foreign(self) -> None:
+        """What no network needs, as the reading and writing of files."""
+        self.new("float", f"torch.{self.rng.choice(FOREIGN)}({self.pick('float')}, {self.size()})")
+
     def complaint(self) -> None:
         told = self.rng.choice([self.pick("size"), self.pick("size"), self.pick("float")])
         self.lines += [
@@ -272,7 +278,7 @@ _STATEMENTS: list[Callable[[_Script], None]] = [
     _Script.arithmetic, _Script.arithmetic, _Script.cast, _Script.cast, _Script.division, _Script.division,
     _Script.shift, _Script.size_arithmetic, _Script.size_arithmetic, _Script.shape, _Script.shape,
     _Script.pieces, _Script.indices, _Script.loop, _Script.in_place, _Script.recurrent, _Script.norm,
-    _Script.complaint,
+    _Script.complaint, _Script.foreign,
 ]  # fmt: skip
 
 
