@@ -72,20 +72,16 @@ def played(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return path
 
 
-@pytest.mark.parametrize("name", ["game.log", "game.log.gz"])
-def test_every_record_comes_back(tmp_path: Path, name: str) -> None:
-    assert list(read_log(write(tmp_path / name))) == RECORDS
-
-
 @given(
     st.lists(st.tuples(st.integers(-(2**63), 2**63 - 1), st.sampled_from(LogKind), st.binary(max_size=300)))
 )
 def test_any_records_come_back(
     tmp_path_factory: pytest.TempPathFactory, records: list[tuple[int, LogKind, bytes]]
 ) -> None:
-    path = tmp_path_factory.mktemp("any") / "any.log"
+    folder = tmp_path_factory.mktemp("any")
     expected = [LogRecord(*record) for record in records]
-    assert list(read_log(write(path, expected))) == expected
+    for name in ("any.log", "any.log.gz"):
+        assert list(read_log(write(folder / name, expected))) == expected
 
 
 def test_the_bytes_are_those_of_the_format(tmp_path: Path) -> None:
@@ -136,18 +132,8 @@ def test_another_version_is_refused(tmp_path: Path) -> None:
         list(read_log(path))
 
 
-@pytest.mark.parametrize("size", [-1, 2**31 - 1])
-def test_an_impossible_size_is_refused_without_reading_it(tmp_path: Path, size: int) -> None:
-    path = write(tmp_path / "game.log")
-    path.write_bytes(path.read_bytes() + struct.pack(">qii", 0, 4, size))
-    records = read_log(path)
-    assert [next(records) for _ in RECORDS] == RECORDS
-    with pytest.raises(LogError, match=f"record 3: impossible size of {size} bytes"):
-        next(records)
-
-
 @pytest.mark.parametrize("name", ["game.log", "game.log.gz"])
-@pytest.mark.parametrize("kind", [LogKind.INDEX, LogKind.BLANK, LogKind.UNKNOWN, 99])
+@pytest.mark.parametrize("kind", [LogKind.INDEX, 99])
 def test_records_without_a_packet_are_skipped_whatever_their_size(
     tmp_path: Path, name: str, kind: int
 ) -> None:
@@ -168,13 +154,14 @@ def test_a_record_that_is_skipped_takes_no_memory_and_may_be_cut_off(
     assert "ends in the middle of record 3" in caplog.text
 
 
-@pytest.mark.parametrize("size", [(1 << 20) + 1, 2**31 - 1, -1])
-@pytest.mark.parametrize("kind", [LogKind.VISION_2010, LogKind.REFEREE, LogKind.VISION, LogKind.TRACKER])
-def test_a_packet_of_an_impossible_size_is_refused(tmp_path: Path, kind: LogKind, size: int) -> None:
+@pytest.mark.parametrize("size", [(1 << 20) + 1, -1])
+def test_a_packet_of_an_impossible_size_is_refused_without_reading_it(tmp_path: Path, size: int) -> None:
     path = write(tmp_path / "game.log")
-    path.write_bytes(path.read_bytes() + struct.pack(">qii", 0, kind, size))
+    path.write_bytes(path.read_bytes() + struct.pack(">qii", 0, LogKind.VISION, size))
+    records = read_log(path)
+    assert [next(records) for _ in RECORDS] == RECORDS
     with pytest.raises(LogError, match=f"record 3: impossible size of {size} bytes"):
-        list(read_log(path))
+        next(records)
 
 
 def test_a_log_is_a_world_that_only_observes(played: Path) -> None:

@@ -96,12 +96,6 @@ def test_the_time_limit_truncates_and_success_goes_before() -> None:
     assert not result.truncated[0]
 
 
-def test_the_default_limit_is_9_9_seconds() -> None:
-    made = task([start()])
-    for tick in range(1, 331):
-        assert bool(made.step(standing(1)).truncated[0]) == (tick == 330)
-
-
 def test_facing_is_needed_where_the_rule_says_so() -> None:
     starts = [start(ball=(0.19, 0)), start(heading=0.4, ball=(0.19, 0)), start(heading=0.6, ball=(0.19, 0))]
     made = task(starts, contact={"rule": "distance_facing"})

@@ -140,18 +140,6 @@ def test_the_time_limit_truncates_after_three_seconds() -> None:
         assert not result.terminated[0]
 
 
-def test_a_goal_on_the_last_tick_is_a_goal() -> None:
-    ticks = 0
-    made = task([start(3.4)])
-    while not made.step(np.array([KICK if ticks == 0 else HOLD])).terminated[0]:
-        ticks += 1
-    made = task([start(3.4)], time_limit=ticks + 1)
-    for tick in range(ticks + 1):
-        result = made.step(np.array([KICK if tick == 0 else HOLD]))
-    assert result.success[0]
-    assert not result.truncated[0]
-
-
 def test_a_lost_ball_ends_the_episode_where_that_is_asked_for() -> None:
     away = [2.0, 0, 0, 0, 0, 0, 2.5, 0, 0, 0]
     assert not task([away]).step(np.array([HOLD])).terminated[0]
@@ -359,7 +347,7 @@ def test_late_robots_start_where_they_can_still_stop() -> None:
     assert speed.max() > 2.0
 
 
-@pytest.mark.parametrize("delay", [0.0, 0.06, 0.1, 0.13])
+@pytest.mark.parametrize("delay", [0.0, 0.13])
 def test_the_script_that_knows_the_delay_scores(delay: float) -> None:
     settings = ShootSettings.model_validate(
         {"simulator": "rsim", "randomisation": {"control_delay": (delay, delay)}}
