@@ -10,7 +10,7 @@ from robobt.learning import TASKS
 from robobt.learning.training.demonstrations import read_demonstrations
 from robobt.learning.training.run_folder import load_run
 from tests.learning.tiny import draw_no_curves
-from tests.learning.training.test_train import SHORT
+from tests.learning.training.test_seeds import SHORT
 from tests.registries import temporarily
 
 OPTIONS = [part for name, value in SHORT.items() for part in ("--set", f"{name}={json.dumps(value)}")]
