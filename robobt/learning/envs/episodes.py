@@ -54,6 +54,12 @@ class Episodes:
     def __len__(self) -> int:
         return len(self.start)
 
+    @property
+    def time_ratio(self) -> float:
+        """Mean time over mean optimum of the successes that have one; nan without any."""
+        counts = self.success & np.isfinite(self.optimum) & (self.optimum > 0.0)
+        return float(self.time[counts].sum() / self.optimum[counts].sum()) if counts.any() else float("nan")
+
     def pick(self, which: IntArray | BoolArray) -> Episodes:
         """Return the episodes at these indices."""
         return Episodes(**{item.name: getattr(self, item.name)[which] for item in fields(self)})
