@@ -15,7 +15,6 @@ from io import TextIOWrapper
 from typing import Annotated
 
 import typer
-from rich.markup import escape
 
 from robobt.cli.common import MAX_SEED as MAX_SEED
 from robobt.cli.common import Json as Json
@@ -25,13 +24,12 @@ from robobt.cli.common import Where as Where
 from robobt.cli.common import Workers as Workers
 from robobt.cli.common import console as console
 from robobt.cli.common import cores as cores
-from robobt.cli.common import errors, one_line_errors
+from robobt.cli.common import one_line_errors
 from robobt.cli.common import one_of as one_of
 from robobt.cli.common import print_json as print_json
 from robobt.cli.common import say as say
 from robobt.cli.common import table as table
 from robobt.cli.common import world_of as world_of
-from robobt.cli.moved import what_became
 from robobt.cli.option_groups.page import Page as Page
 from robobt.cli.option_groups.spread import spread
 from robobt.cli.options import option
@@ -168,9 +166,6 @@ def application(only: str | None = None) -> typer.Typer:
 
 def main() -> None:
     """Run the command ``robobt``."""
-    if (became := what_became(sys.argv[1:])) is not None:
-        errors.print(escape(became), soft_wrap=True)
-        raise SystemExit(2)
     if _only_names(sys.argv[1:]):
         compile_nothing()
         os.environ.update(_START_OF_LISTS)

@@ -8,8 +8,6 @@ from difflib import get_close_matches
 from pathlib import Path
 from typing import Any
 
-from robobt.config.renamed import RENAMED
-
 
 class RobobtError(Exception):
     """Base class of every error that robobt raises on purpose; the message is one readable line."""
@@ -99,8 +97,6 @@ MANY = 12
 def unknown_name(name: object, known: Iterable[str], there_are: str = "there are", command: str = "") -> str:
     """Return the end of a message about an unknown name: the likely name, the known ones, or both if few.
 
-    Of a name that has changed it says what it is now.
-
     Args:
         name: the unknown name.
         known: the known names.
@@ -108,8 +104,6 @@ def unknown_name(name: object, known: Iterable[str], there_are: str = "there are
         command: the command that lists the names, given in place of more than :data:`MANY` of them.
     """
     there = list(known)
-    if (now := RENAMED.get(str(name))) in there:
-        return f"{name} is {now} now"
     meant = close_names(str(name), there) if len(there) > 1 else []
     guess = f"did you mean {' or '.join(meant)}?"
     if meant and len(there) > FEW:

@@ -8,7 +8,6 @@ from hashlib import sha256
 from pathlib import Path
 
 from robobt.config.errors import close_names
-from robobt.config.renamed import RENAMED
 from robobt.config.resources import models_folder
 from robobt.models.card import Kind, ModelCard
 from robobt.models.file import (
@@ -59,8 +58,6 @@ def find_model(name_or_path: str | Path) -> Path:
             "copy its file into a folder models here, or give its path"
         )
     there = sorted({path.stem for folder in folders for path in list_models(folder)})
-    if (now := RENAMED.get(text)) in there:
-        raise UnknownModelError(f"no model is called {text!r}: {text} is {now} now")
     meant = close_names(text, there)
     guess = f"did you mean {' or '.join(meant)}? " if meant else ""
     known = f"installed: {', '.join(there) or 'none'}; {guess}or give the path of a file"

@@ -13,8 +13,7 @@ from typing import Any, Self
 
 from pydantic import Field, ValidationError, field_validator, model_validator
 
-from robobt.config.errors import ConfigError, FieldError, close_names, unknown_name
-from robobt.config.renamed import RENAMED
+from robobt.config.errors import ConfigError, FieldError, close_names
 from robobt.config.resources import bundled_scenarios, models_folder
 from robobt.config.validation import Settings, first_problem
 from robobt.config.yaml import read_yaml
@@ -295,8 +294,6 @@ def _unknown(name: str) -> str:
     bundled = bundled_scenarios()
     meant = close_names(name, [*PLAYS, *bundled])
     there = "'robobt list plays' and 'robobt list scenarios' list what there is"
-    if name in RENAMED:
-        return f"no play is called {name!r}; {unknown_name(name, [*PLAYS, *bundled])}"
     return PLAYS.problem_with(name) or (
         f"no play is called {name!r}; an entrant is a play, a file (.yaml), or a scenario's side, as in "
         "six_v_six:blue, or a Python file's, as in my_team.py:striker. "

@@ -518,10 +518,6 @@ class TestTree:
 
 
 class TestErrors:
-    def test_a_command_that_has_moved_says_how_it_is_run_now(self):
-        run = subprocess.run([sys.executable, "-m", "robobt", "tree", "x"], capture_output=True, text=True)
-        assert (run.returncode, run.stderr) == (2, "'robobt tree' is 'robobt show' now: robobt show x\n")
-
     def test_a_missing_scenario_is_named_and_those_there_are(self):
         assert complaint("match", "nowhere").startswith("robobt: nowhere: no such file or bundled scenario; ")
 

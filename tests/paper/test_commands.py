@@ -7,7 +7,6 @@ import pytest
 from typer.testing import CliRunner
 
 from paper.__main__ import application
-from robobt.cli.moved import what_became
 from robobt.shots.data.files import write_shots
 from tests.shots.made_up import made_up_table, train_quickly
 
@@ -71,9 +70,3 @@ def test_help_needs_nothing_heavy():
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "set()"
-
-
-def test_robobt_says_what_its_command_became():
-    said = what_became(["paper", "table4", "--only", "geometric, kick"])
-    assert said is not None
-    assert said.endswith(": python -m paper table4 --only 'geometric, kick'")
