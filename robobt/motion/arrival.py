@@ -13,7 +13,6 @@ from collections.abc import Sequence
 from math import cos, hypot, pi, sin, sqrt
 
 import numpy as np
-from numpy.typing import NDArray
 
 from robobt.world.ball_model import way_in
 from robobt.world.compiled import compiled, compiled_merged, records
@@ -63,18 +62,6 @@ def axis_time(gap: float, speed: float, top: float, acceleration: float, braking
 def arrival_time(mover_: FloatArray, x: float, y: float, slack: float) -> float:
     """Like :func:`time_to`, for a row of :func:`robobt.world.records.movers`. Return the time [s]."""
     return time_to(mover_.view(MOVER)[0], x, y, slack)
-
-
-@compiled
-def arrival_times(movers_: FloatArray, rows: NDArray[np.int64], places: FloatArray) -> FloatArray:
-    """Compute when the robots of these rows of the movers can stand at every place (m, 2): (n, m) [s]."""
-    movers = mover_records(movers_)
-    out = np.empty((len(rows), len(places)))
-    for i in range(len(rows)):
-        for j in range(len(places)):
-            x, y = places[j]
-            out[i, j] = time_to(movers[rows[i]], x, y, 0.0)
-    return out
 
 
 @compiled

@@ -167,15 +167,9 @@ class GameState:
 
     def mirrored(self) -> GameState:
         """Return the same state in coordinates turned by 180 degrees."""
-        global _last_mirrored
         if self.placement is None:
             return self
-        last, image = _last_mirrored
-        if last is not self:
-            image = replace(self, placement=(-self.placement[0], -self.placement[1]))
-            # A state mostly lasts for many frames.
-            _last_mirrored = self, image
-        return image
+        return replace(self, placement=(-self.placement[0], -self.placement[1]))
 
 
 _STOP = RefereeCommand.STOP
@@ -195,4 +189,3 @@ _COMMAND_TEAMS = {
 }
 OPEN_PLAY = GameState()
 """Free play without a referee, for scenarios without one."""
-_last_mirrored = OPEN_PLAY, OPEN_PLAY

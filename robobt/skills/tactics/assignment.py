@@ -59,27 +59,13 @@ def jobs_of(
     return found
 
 
-def assign(cost: FloatArray) -> list[tuple[int, int]]:
-    """Return the assignment with the least total cost, as pairs (row, column) in the order of the rows.
-
-    ``cost`` (n, m) is finite; if n and m differ, the surplus rows or columns stay unassigned. This needs only
-    numpy, so that a match starts quickly.
-
-    Source: Jonker and Volgenant, "A shortest augmenting path algorithm for dense and sparse linear
-    assignment problems", 1987.
-    """
-    if cost.shape[0] <= cost.shape[1]:
-        return list(enumerate(_columns(np.ascontiguousarray(cost)).tolist()))
-    pairs = enumerate(_columns(np.ascontiguousarray(cost.T)).tolist())
-    return sorted([(row, column) for column, row in pairs])
-
-
 @compiled
 def _columns(cost: FloatArray) -> NDArray[np.int64]:
     """Return the column of each row, (n,), of costs with at least as many columns as rows.
 
-    For each row it finds the cheapest augmenting path to a free column, which may reassign earlier rows; the
-    prices keep every reduced cost at zero or more.
+    Source: Jonker and Volgenant, "A shortest augmenting path algorithm for dense and sparse linear
+    assignment problems", 1987. For each row it finds the cheapest augmenting path to a free column, which may
+    reassign earlier rows; the prices keep every reduced cost at zero or more.
     """
     rows, columns = cost.shape
     row_price, column_price = np.zeros(rows), np.zeros(columns)

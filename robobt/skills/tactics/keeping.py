@@ -7,11 +7,10 @@ from math import cos, hypot, pi, sin
 
 import numpy as np
 
-from robobt.motion.arrival import arrival_times
 from robobt.skills.plan import TeamPlan
 from robobt.skills.store import TeamStore
 from robobt.skills.tactics.agree import pass_under_way
-from robobt.skills.tactics.assignment import assign
+from robobt.skills.tactics.assignment import jobs_of
 from robobt.skills.tactics.lanes import flight_time, kick_speed, lane_margin, sigmoid, time_to_pass
 from robobt.skills.tactics_settings import TACTICS, AppliedTactics
 from robobt.world.compiled import compiled
@@ -39,6 +38,9 @@ _PLACES_EVERY = 0.15
 
 _PLACES_APART = 1.3
 """Places nearer to each other than this lose worth [m]."""
+
+_LONG_WAY = 0.3
+"""How much the square of a robot's time to its place counts [1/s]."""
 
 _STAY_BONUS = 0.12
 """Worth added to the places chosen last."""
@@ -101,11 +103,12 @@ class KeepingPlaces:
         if len(self._chosen) != len(free) or not 0.0 <= frame.time - self._time < _PLACES_EVERY:
             self._time = frame.time
             self._chosen = self._choose(frame, team, plan, len(free))
-        times = arrival_times(plan.own_movers, np.array([row for row, _ in free]), self._chosen)
+        rows, kinds = np.array([row for row, _ in free]), np.zeros(len(free), dtype=np.int64)
+        jobs = jobs_of(plan.own_movers, rows, kinds, self._chosen, kinds, 0.0, _LONG_WAY)
         self.places = {}
-        for row, column in assign(times + 0.3 * times * times):
-            x, y = self._chosen[column].tolist()
-            self.places[free[row][1].id] = (x, y)
+        for (_, robot), job in zip(free, jobs.tolist(), strict=True):
+            x, y = self._chosen[job].tolist()
+            self.places[robot.id] = (x, y)
 
     def _choose(self, frame: Frame, team: TeamStore, plan: TeamPlan, count: int) -> FloatArray:
         ox, oy = frame.ball.position
