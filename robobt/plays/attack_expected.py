@@ -13,14 +13,8 @@ from robobt.skills.ball.pick_up_ball import PickUpBall
 from robobt.skills.conditions.has_ball import HasBall
 from robobt.skills.team.best_field_position import BestFieldPosition
 from robobt.tree import Behaviour
-from robobt.tree.parameters import formerly
 
 
-@formerly(
-    model="rater: {name: expected_goal, model: ...}",
-    threshold="min_score: ..., and rater: {name: expected_goal, threshold: ...}",
-    speed="speed_factor",
-)
 @PLAYS.register("attack_expected")
 def attack_expected(
     *,

@@ -15,14 +15,8 @@ from robobt.skills.ball.pick_up_ball import PickUpBall
 from robobt.skills.conditions.has_ball import HasBall
 from robobt.skills.team.best_field_position import BestFieldPosition
 from robobt.tree import Behaviour, FailureIsSuccess
-from robobt.tree.parameters import formerly
 
 
-@formerly(
-    tolerance="rater: {name: segment_clearance, tolerance: ...}",
-    speed="speed_factor",
-    kick="the play paper/robobulls.py:robobulls_attack_main",
-)
 @PLAYS.register("attack_main")
 def attack_main(
     *,

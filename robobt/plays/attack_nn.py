@@ -14,17 +14,10 @@ from robobt.skills.ball.pick_up_ball import PickUpBall
 from robobt.skills.conditions.has_ball import HasBall
 from robobt.skills.team.best_field_position import BestFieldPosition
 from robobt.tree import Behaviour, FailureIsSuccess
-from robobt.tree.parameters import formerly
 
 _STRONG_NETWORK_FILTER: Rater = {"name": "nn_filtered", "model": "shot_nn_strong"}
 
 
-@formerly(
-    model="rater: {name: nn_filtered, model: ...}",
-    threshold="rater: {name: nn_filtered, threshold: ...}",
-    tolerance="rater: {name: nn_filtered, tolerance: ...}",
-    speed="speed_factor",
-)
 @PLAYS.register("attack_nn")
 def attack_nn(
     *,

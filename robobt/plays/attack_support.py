@@ -12,10 +12,8 @@ from robobt.skills.team.mate_aims_at_me import MateAimsAtMe
 from robobt.skills.team.pass_is_coming import PassIsComing
 from robobt.skills.team.select_support_position import SelectSupportPosition
 from robobt.tree import Behaviour
-from robobt.tree.parameters import formerly
 
 
-@formerly(speed="speed_factor")
 @PLAYS.register("attack_support")
 def attack_support(*, speed_factor: float = 1.0) -> Behaviour:
     """Receive a pass, else stand still while a mate aims one, else wait where a pass and a shot are possible.

@@ -15,17 +15,12 @@ from robobt.skills.ball.pick_up_ball import PickUpBall
 from robobt.skills.ball.shoot import SHOOT_POLICIES, Policy, Shoot
 from robobt.skills.conditions.has_ball import HasBall
 from robobt.tree import Behaviour
-from robobt.tree.parameters import formerly
 
 _Shot: TypeAlias = Annotated[
     str | Mapping[str, object] | Policy, policies_by_name(SHOOT_POLICIES, "kick_to_target")
 ]
 
 
-@formerly(
-    shoot_model="shoot: MODEL",
-    style="the play paper/robobulls.py:robobulls_go_to_ball_and_shoot",
-)
 @PLAYS.register("go_to_ball_and_shoot")
 def go_to_ball_and_shoot(
     *,

@@ -18,10 +18,8 @@ from robobt.skills.defence.return_to_goal import ReturnToGoal
 from robobt.skills.defence.shot_coming import ShotComing
 from robobt.skills.robobulls.kick_as_robobulls import KickAsRobobulls
 from robobt.tree import Behaviour
-from robobt.tree.parameters import formerly
 
 
-@formerly(speed="speed_factor", style="the play paper/robobulls.py:robobulls_goalkeeper")
 @PLAYS.register("goalkeeper")
 def goalkeeper(*, speed_factor: float = 1.0) -> Behaviour:
     """Keep the ball out of the own goal; the first branch whose condition holds is ticked.

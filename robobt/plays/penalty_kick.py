@@ -15,7 +15,6 @@ from robobt.skills.conditions.has_ball import HasBall
 from robobt.skills.stop import Stop
 from robobt.skills.team.best_field_position import BestFieldPosition
 from robobt.tree import Behaviour
-from robobt.tree.parameters import formerly
 
 _CONFIDENT_EXPECTED_GOAL: Rater = {
     "name": "expected_goal",
@@ -23,10 +22,6 @@ _CONFIDENT_EXPECTED_GOAL: Rater = {
 }
 
 
-@formerly(
-    model="rater: {name: expected_goal, model: ...}",
-    threshold="min_score: ..., and rater: {name: expected_goal, threshold: ...}",
-)
 @PLAYS.register("penalty_kick")
 def penalty_kick(
     *,

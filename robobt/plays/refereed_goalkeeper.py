@@ -15,14 +15,12 @@ from robobt.skills.restarts.go_to_penalty_position import GoToPenaltyPosition
 from robobt.skills.restarts.keep_distance import KeepDistance
 from robobt.skills.stop import Stop
 from robobt.tree import Behaviour, Inverter
-from robobt.tree.parameters import formerly
 from robobt.world.game import Restart
 
 _PENALTY_SHOT_SPEED = 2.5
 """A ball that approaches the goal faster than this counts as kicked [m/s]."""
 
 
-@formerly(speed="speed_factor")
 @PLAYS.register("refereed_goalkeeper")
 def refereed_goalkeeper(*, speed_factor: float = 1.0) -> Behaviour:
     """Keep goal as ``goalkeeper`` does, within the referee's commands.

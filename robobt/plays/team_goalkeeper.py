@@ -12,10 +12,8 @@ from robobt.skills.conditions.ball_in_own_half import BallInOwnHalf
 from robobt.skills.conditions.ball_rests_in_defense import BallRestsInDefense
 from robobt.skills.defence.goalkeeper import Goalkeeper
 from robobt.tree import Behaviour
-from robobt.tree.parameters import formerly
 
 
-@formerly(speed="speed_factor")
 @PLAYS.register("team_goalkeeper")
 def team_goalkeeper(*, speed_factor: float = 1.0, chips: bool = True, policy: str = "") -> Behaviour:
     """Keep goal as ``refereed_goalkeeper`` does, and chip the ball out where no way along the ground is free.

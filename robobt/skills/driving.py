@@ -6,11 +6,9 @@ from dataclasses import dataclass
 
 from robobt.motion.pace import Pace
 from robobt.skills.base import Skill
-from robobt.tree.parameters import formerly
 from robobt.world.limits import RobotLimits
 
 
-@formerly(speed="speed_factor")
 @dataclass(kw_only=True, eq=False, repr=False)
 class DrivingSkill(Skill):
     """A skill that drives by given limits, at a share of their top speed.

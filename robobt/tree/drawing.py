@@ -1,4 +1,4 @@
-"""Drawings of a tree: as text and as DOT, with or without the statuses of its last tick."""
+"""Drawings of a tree: as text, with or without the statuses of its last tick, and as DOT."""
 
 from __future__ import annotations
 
@@ -26,12 +26,6 @@ _POLICIES = {
 }
 _LONGEST_VALUE = 32
 _MARKS = {Status.SUCCESS: "✓", Status.FAILURE: "✗", Status.RUNNING: "▶", Status.INVALID: "·"}
-COLOURS = {
-    Status.SUCCESS: "#1f9d5b",
-    Status.FAILURE: "#dd4b41",
-    Status.RUNNING: "#2f7df0",
-    Status.INVALID: "#c5cdd5",
-}
 
 
 @dataclass(slots=True, frozen=True)
@@ -146,8 +140,8 @@ def _text_lines(node: Behaviour, lead: str, below: str, statuses: bool) -> Itera
         )
 
 
-def tree_dot(root: Behaviour, statuses: bool = False) -> str:
-    """Return the tree of ``root`` for Graphviz; ``statuses`` colours the nodes by their last tick."""
+def tree_dot(root: Behaviour) -> str:
+    """Return the tree of ``root`` for Graphviz."""
     lines = [
         f"digraph {_dot_text(root.name)} {{",
         '  node [fontname="Helvetica", fontsize=11, style="rounded,filled", fillcolor="#ffffff"];',
@@ -161,8 +155,7 @@ def tree_dot(root: Behaviour, statuses: bool = False) -> str:
         label = _dot_text("\n".join(part for part in (shown.title, shown.remark) if part))
         shape = {"composite": "box", "decorator": "hexagon", "leaf": "ellipse"}[shown.kind]
         style = ' style="filled",' if shown.kind != "composite" else ""
-        colour = f', color="{COLOURS[node.status]}", penwidth=2' if statuses else ""
-        lines.append(f"  n{place} [label={label},{style} shape={shape}{colour}];")
+        lines.append(f"  n{place} [label={label},{style} shape={shape}];")
     lines += [f"  n{places[node]} -> n{places[child]};" for node in places for child in node.children]
     return "\n".join([*lines, "}"]) + "\n"
 

@@ -10,7 +10,7 @@ from collections.abc import Callable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Annotated, Any, TypeVar
+from typing import Annotated, Any
 
 from pydantic import BaseModel, ConfigDict, TypeAdapter, ValidationError
 from pydantic.errors import PydanticUserError
@@ -20,10 +20,6 @@ from robobt.config.errors import FieldError, RobobtError, message_of, short_repr
 from robobt.config.validation import first_problem, nested, plain_words
 from robobt.tree.by_name import ByName
 from robobt.tree.signatures import signature_of
-
-BuilderT = TypeVar("BuilderT", bound=Callable[..., object])
-
-_NO_FORMER_PARAMETERS: Mapping[str, str] = {}
 
 
 class ParameterError(RobobtError, ValueError):
@@ -143,7 +139,7 @@ def check_parameters(
     for name, value in given.items():
         key, _, inner = name.partition(".")
         whole[key] = nested(_settings_of(whole.get(key), known.get(key)), inner, value) if inner else value
-    check_names(what, known, whole, former_names(builder))
+    check_names(what, known, whole)
     return {name: known[name].convert(value) for name, value in whole.items()}
 
 
@@ -175,35 +171,11 @@ def parameter_at(what: str, builder: Callable[..., object], name: str) -> Parame
     return found
 
 
-def formerly(**written: str) -> Callable[[BuilderT], BuilderT]:
-    """Return a decorator that says what to write for parameters a play or node had in earlier versions."""
-
-    def mark(builder: BuilderT) -> BuilderT:
-        builder.former_parameters = written  # type: ignore[attr-defined]
-        return builder
-
-    return mark
-
-
-def former_names(builder: object) -> Mapping[str, str]:
-    """Return what is to be written for parameters that a play or node had in earlier versions."""
-    found: Mapping[str, str] = getattr(builder, "former_parameters", _NO_FORMER_PARAMETERS)
-    return found
-
-
-def check_names(
-    what: str,
-    known: Mapping[str, Parameter],
-    given: Mapping[str, object],
-    former: Mapping[str, str] = _NO_FORMER_PARAMETERS,
-) -> None:
-    """Check that every given name is known and every parameter without a default is given.
-
-    ``former`` says what is to be written for parameters of earlier versions.
-    """
+def check_names(what: str, known: Mapping[str, Parameter], given: Mapping[str, object]) -> None:
+    """Check that every given name is known and every parameter without a default is given."""
     for name in given:
         if name not in known:
-            there = f"write {former[name]}" if name in former else unknown_name(name, known, "it has")
+            there = unknown_name(name, known, "it has")
             raise ParameterError(name, f"{what} has no such parameter; {there}")
     for name, parameter in known.items():
         if parameter.required and name not in given:

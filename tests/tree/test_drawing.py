@@ -185,11 +185,6 @@ def test_graphviz_gets_every_node_and_edge_in_order() -> None:
     assert '"say \\"hi\\" \\\\ n"' in tree_dot(Drive(name='say "hi" \\ n'))
 
 
-def test_graphviz_colours_follow_the_statuses() -> None:
-    assert "color=" not in tree_dot(striker()).split("n0", 1)[1].split("}")[0]
-    assert tree_dot(ticked(striker()), statuses=True).count('"#dd4b41"') == 2
-
-
 def test_a_tree_shows_itself_in_a_notebook_with_its_statuses_once_it_was_ticked(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:

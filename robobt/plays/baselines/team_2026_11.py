@@ -49,7 +49,6 @@ from robobt.skills.restarts.place_ball import PlaceBall
 from robobt.skills.restarts.prepare_restart import PrepareRestart
 from robobt.skills.stop import Stop
 from robobt.tree import Behaviour, Inverter, Selector, Sequence
-from robobt.tree.parameters import formerly
 from robobt.world.game import Restart
 
 UPFIELD_SPEED = 2.0
@@ -255,7 +254,6 @@ def defender_2026_11(
     return GoRound("as in 2026-11", player.defender("defender", _penalty_kick(), wall))
 
 
-@formerly(speed="speed_factor")
 @PLAYS.register("goalkeeper_2026_11")
 def goalkeeper_2026_11(*, speed_factor: float = 1.0) -> Behaviour:
     """Keep goal as ``goalkeeper`` does, within the referee's commands.

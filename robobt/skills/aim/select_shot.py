@@ -9,11 +9,9 @@ from robobt.skills.aim.raters.shot_predictor import LearnedRater
 from robobt.skills.base import Skill, skill
 from robobt.skills.store import Shot
 from robobt.tree import Status
-from robobt.tree.parameters import formerly
 from robobt.world.geometry import Point, direction, distance, wrap_angle
 
 
-@formerly(tolerance="rater: {name: segment_clearance, tolerance: ...}")
 @skill
 class SelectShot(Skill):
     """Rate the shots from where the ball lies and write the best one to ``shot``.

@@ -5,11 +5,9 @@ from __future__ import annotations
 from robobt.skills.aim.raters import Rater, make_rater
 from robobt.skills.base import Skill, skill
 from robobt.tree import Status
-from robobt.tree.parameters import formerly
 from robobt.world.geometry import distance
 
 
-@formerly(tolerance="rater: {name: segment_clearance, tolerance: ...}")
 @skill
 class ShotIsOpen(Skill):
     """SUCCESS when a shot from where the ball lies is good enough, else FAILURE with the reason.

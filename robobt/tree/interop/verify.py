@@ -21,7 +21,7 @@ from robobt.tree.interop.model import (
     specs_of,
 )
 from robobt.tree.interop.vocabulary import Vocabulary
-from robobt.tree.parameters import Parameter, ParameterError, check_names, former_names, parameters_of
+from robobt.tree.parameters import Parameter, ParameterError, check_names, parameters_of
 from robobt.tree.registry import Registry
 
 
@@ -85,7 +85,7 @@ class _Verifier:
             raise self._error(spec.line, f"{spec.type}: name: {spec.type} needs this parameter")
         entries = {*kind.reads, *kind.writes} - set(kind.parameters)
         given = {name: value for name, value in spec.parameters.items() if name not in entries}
-        self._parameters(spec, spec.type, kind.parameters, given, former_names(kind.cls))
+        self._parameters(spec, spec.type, kind.parameters, given)
         for name, shape in kind.branches.items():
             if name not in spec.branches and shape in ("one", "cases"):
                 raise self._error(spec.line, f"{spec.type}: {name}: {spec.type} needs this branch")
@@ -93,11 +93,9 @@ class _Verifier:
     def _sub_tree(self, spec: SubTree) -> None:
         definition = self.file.trees.get(spec.tree)
         if definition is None:
-            known = self._play_parameters(spec)
-            former = former_names(self.vocabulary.plays[spec.tree])
-            self._parameters(spec, spec.tree, known, spec.parameters, former)
+            self._parameters(spec, spec.tree, self._play_parameters(spec), spec.parameters)
         elif self.file.language == "yaml":
-            self._parameters(spec, spec.tree, definition.parameters, spec.parameters, {})
+            self._parameters(spec, spec.tree, definition.parameters, spec.parameters)
         else:
             self._ports(spec, definition)
 
@@ -122,15 +120,10 @@ class _Verifier:
                 raise self._error(spec.line, f"{spec.tree}: {name}: {spec.tree} needs this port")
 
     def _parameters(
-        self,
-        spec: Spec,
-        what: str,
-        known: Mapping[str, Parameter],
-        given: Mapping[str, Value],
-        former: Mapping[str, str],
+        self, spec: Spec, what: str, known: Mapping[str, Parameter], given: Mapping[str, Value]
     ) -> None:
         try:
-            check_names(what, known, given, former)
+            check_names(what, known, given)
             for name, value in given.items():
                 if isinstance(value, Text):
                     self.vocabulary.from_text(known[name], value.text)

@@ -26,7 +26,7 @@ from robobt.tree.interop.node_types import NodeType
 from robobt.tree.interop.verify import sub_trees, unknown_type, verify
 from robobt.tree.interop.vocabulary import Vocabulary, is_pointer
 from robobt.tree.interop.xml_elements import Element, ElementChecker, read_element
-from robobt.tree.parameters import Parameter, ParameterError, former_names
+from robobt.tree.parameters import Parameter, ParameterError
 
 Include: TypeAlias = Callable[[str], tuple[str, bytes]]
 """Returns the name, for messages, and the text of a file that a project includes."""
@@ -209,8 +209,6 @@ class _XmlTreeReader(ElementChecker):
         if hidden or (parameter is None and name not in entries):
             there = list(tag.attributes) if shown in TAGS else [*kind.parameters, *entries]
             has = f"it has {', '.join(there)}" if there else "it has none besides its name"
-            if name in (former := former_names(kind.cls)):
-                has = f"write {former[name]}"
             raise self.error(element, f"<{shown}> has no attribute {name}; {has}")
         if is_pointer(text):
             if attribute is not None and attribute.milliseconds:

@@ -113,25 +113,6 @@ def test_a_setting_of_a_rater_is_named_in_one_line(tmp_path: Path):
     assert said(expected_goal={"threshold": 0.5}).startswith("name: is missing: write {name: expected_goal, ")
 
 
-@pytest.mark.parametrize(
-    ("play", "former", "now"),
-    [
-        ("attack_main", {"tolerance": 0.3}, "rater: {name: segment_clearance, tolerance: ...}"),
-        ("attack_nn", {"model": "shot_nn"}, "rater: {name: nn_filtered, model: ...}"),
-        ("attack_expected", {"threshold": 0.8}, "rater: {name: expected_goal, threshold: ...}"),
-        ("penalty_kick", {"threshold": 0.8}, "min_score: ..."),
-        ("attack_nn", {"speed": 0.5}, "write speed_factor"),
-        ("goalkeeper", {"speed": 0.5}, "write speed_factor"),
-    ],
-)
-def test_a_setting_of_earlier_versions_is_refused_with_what_to_write(
-    tmp_path: Path, play: str, former: dict[str, object], now: str
-):
-    said = refusal(written(tmp_path, play, former))
-    assert f"robots.blue.0.params.{next(iter(former))}: " in said
-    assert now in said
-
-
 def test_a_tree_file_with_a_spoiled_model_is_refused_with_its_line(tmp_path: Path):
     model, tree = spoiled(tmp_path, "empty", SCENE), tmp_path / "tree.yaml"
     leaf = f"ChooseKick: {{model: {model}}}"

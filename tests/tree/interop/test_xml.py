@@ -115,14 +115,6 @@ def test_a_tutorials_tree_is_equal_once_written_out_and_read_back(name: str) -> 
     assert tree_differences(build_tree(file, VOCABULARY), build_tree(again, VOCABULARY), VOCABULARY) == []
 
 
-@pytest.mark.parametrize("name", TUTORIALS)
-def test_a_tutorials_tree_is_equal_once_described_from_its_nodes(name: str) -> None:
-    root = build_tree(load(name), VOCABULARY)
-    file = describe_tree(root, VOCABULARY, "Main")
-    again = build_tree(read(write_xml(file, VOCABULARY)), VOCABULARY)
-    assert tree_differences(root, again, VOCABULARY) == []
-
-
 def test_the_files_are_all_looked_at() -> None:
     assert sorted(path.stem for path in DATA.glob("*.xml")) == sorted(TUTORIALS)
 
@@ -185,10 +177,6 @@ def test_t07_the_main_tree_is_the_one_that_is_named() -> None:
     assert house.said[-1] == "part B"
 
 
-def test_t10_without_a_named_one_it_is_the_tree_that_is_nobodys_sub_tree() -> None:
-    assert load("t10_nested_subtrees").main == "Top"
-
-
 def test_t11_what_groot_writes_besides_is_read_over_and_a_sub_trees_model_gives_defaults() -> None:
     house = House()
     run(build_tree(load("t11_saved_by_groot"), VOCABULARY), house)
@@ -248,16 +236,6 @@ def test_without_end_is_minus_one_in_the_file_again(tag: str) -> None:
         assert tree_differences(tree_of(write_xml(again, VOCABULARY)), root, VOCABULARY) == []
 
 
-def test_retrying_without_end_outlasts_any_number_of_failures() -> None:
-    house = House()
-    runner = TreeRunner(
-        tree('<RetryUntilSuccessful num_attempts="-1"><PassThroughDoor/></RetryUntilSuccessful>'), house
-    )
-    assert {runner.tick() for _ in range(1000)} == {R}
-    house.door_open = True
-    assert runner.tick() is S
-
-
 def test_without_end_cannot_be_a_sub_trees_port() -> None:
     body = '<SubTree ID="Again" times="-1"/>'
     again = (
@@ -283,26 +261,6 @@ def test_every_tag_of_the_table_can_be_read_and_written() -> None:
         file = read(document(body))
         assert f"<{tag}" in write_xml(file, VOCABULARY)
         assert read(write_xml(file, VOCABULARY)) == file
-
-
-def test_a_sequence_begins_again_after_a_failure_and_one_with_memory_does_not() -> None:
-    body = '<SaySomething message="a"/><PassThroughDoor/>'
-    for tag, said in (("Sequence", ["a", "a"]), ("SequenceWithMemory", ["a"])):
-        house = House()
-        runner = TreeRunner(tree(f"<{tag}>{body}</{tag}>"), house)
-        assert [runner.tick(), runner.tick()] == [F, F]
-        assert house.said == said
-
-
-def test_a_fallback_stays_with_its_running_child_and_a_reactive_one_looks_again() -> None:
-    body = '<PassThroughDoor/><MoveBase goal="1;2;3"/>'
-    for tag, last in (("Fallback", "arrived"), ("ReactiveFallback", "through")):
-        house = House()
-        runner = TreeRunner(tree(f"<{tag}>{body}</{tag}>"), house)
-        assert runner.tick() is R
-        house.door_open = True
-        assert runner.tick() is S
-        assert house.said[-1] == last
 
 
 def test_forcing_and_keeping_running_change_only_the_status_they_name() -> None:
@@ -360,7 +318,6 @@ def test_values_of_all_kinds_are_read(attributes: str, expected: Behaviour) -> N
             "rater of <SelectShot>: no shot rater is called 'gausian'; .*did you mean gaussian",
         ),
         ("""rater='json:{"name": "gaussian", "spaceing": 1}'""", "rater.spaceing of .*did you mean spacing"),
-        ('tolerance="0.3"', "no attribute tolerance; write rater: {name: segment_clearance, tolerance: ...}"),
     ],
 )
 def test_what_is_wrong_with_a_rater_is_named(attribute: str, problem: str) -> None:
@@ -585,10 +542,7 @@ SUB = '<BehaviorTree ID="Sub"><SaySomething message="{word}"/></BehaviorTree>'
     ("text", "problem"),
     [
         ("", "is not XML"),
-        ("<root", "is not XML"),
         ("<root></toor>", "mismatched tag"),
-        (document("<SaySomething message='x' message='y'/>"), "duplicate attribute"),
-        ('<!DOCTYPE root><root BTCPP_format="4"/>', "document type"),
         ('<!DOCTYPE r [<!ENTITY a "b">]><root BTCPP_format="4"/>', "document type"),
         (document('<SaySomething message="&a;"/>'), "undefined entity"),
         ("<?php x?>" + document(SAY), r"<\?php\?> is not allowed"),
@@ -596,11 +550,6 @@ SUB = '<BehaviorTree ID="Sub"><SaySomething message="{word}"/></BehaviorTree>'
         (
             "<root/>",
             r"this file is for BehaviorTree.CPP 3 \(<root> has no BTCPP_format\); "
-            'robobt reads version 4: convert it, then set BTCPP_format="4"',
-        ),
-        (
-            '<root BTCPP_format="3"/>',
-            r'this file is for BehaviorTree.CPP 3 \(BTCPP_format="3"\); '
             'robobt reads version 4: convert it, then set BTCPP_format="4"',
         ),
         ('<root BTCPP_format="4" project="p"/>', "no attribute project"),
@@ -611,16 +560,9 @@ SUB = '<BehaviorTree ID="Sub"><SaySomething message="{word}"/></BehaviorTree>'
         (document(SAY, "<BehaviorTree><AlwaysSuccess/></BehaviorTree>"), "needs the attribute ID"),
         (document(SAY, '<BehaviorTree ID="Main"><AlwaysSuccess/></BehaviorTree>'), "'Main' is there twice"),
         (document(""), "<BehaviorTree> has one child, not 0"),
-        (document(SAY + SAY), "<BehaviorTree> has one child, not 2"),
         (
             document(SAY, '<BehaviorTree ID="Other"><AlwaysSuccess/></BehaviorTree>'),
             "Main and Other could both be the main tree; name one in main_tree_to_execute",
-        ),
-        (
-            document(
-                SAY, "".join(f'<BehaviorTree ID="{name}"><AlwaysSuccess/></BehaviorTree>' for name in "AB")
-            ),
-            "Main, A and B could all be the main tree; name one in main_tree_to_execute",
         ),
         (
             document('<SubTree ID="B"/>', '<BehaviorTree ID="B"><SubTree ID="Main"/></BehaviorTree>'),
@@ -632,19 +574,14 @@ SUB = '<BehaviorTree ID="Sub"><SaySomething message="{word}"/></BehaviorTree>'
         ),
         (document("<Qqqq/>"), "no node is called 'Qqqq'; there are .*SaySomething"),
         (document("<saysomething/>"), "is it SaySomething"),
-        (document(f"<RetryUntilSuccesful>{SAY}</RetryUntilSuccesful>"), "is it RetryUntilSuccessful"),
         (document(f"<Switch3>{SAY}</Switch3>"), "<Switch3>: robobt has no blackboard; write a switch"),
-        (document("<LoopInt/>"), "<LoopInt>: robobt has no blackboard and no such node"),
-        (document('<Action ID="Nothing"/>'), "no node is called 'Nothing'"),
         (document("<Action/>"), "<Action> needs the attribute ID"),
         (
             document('<Control ID="SaySomething" message="x"/>'),
             "SaySomething is not a <Control> but a <Action>",
         ),
         (document('<Action ID="Inverter"/>'), "Inverter is not a <Action> but a <Decorator>"),
-        (document('<SaySomething ID="x" message="y"/>'), "no attribute ID"),
         (document('<Script code="x:=1"/>'), "robobt has no scripts"),
-        (document('<SetBlackboard output_key="x" value="1"/>'), "robobt has no blackboard"),
         (document('<SaySomething message="x" _skipIf="y"/>'), "_skipIf: robobt has no scripts"),
         (document('<SaySomething message="x" _odd="y"/>'), "no attribute _odd"),
         (document("<SaySomething/>"), "message: SaySomething needs this parameter"),
@@ -653,9 +590,7 @@ SUB = '<BehaviorTree ID="Sub"><SaySomething message="{word}"/></BehaviorTree>'
         (document(f'<SaySomething message="x">{SAY}</SaySomething>'), "<SaySomething> has no children"),
         (document('<SaySomething message="x">hello</SaySomething>'), "there is text"),
         (document('<Aim speed="fast"/>'), "speed of <Aim>: 'fast' is not of type float"),
-        (document('<Aim speed="1e999"/>'), "'1e999' is not of type float"),
         (document('<Aim speed="{target}"/>'), "takes a value, and cannot be wired to the entry 'target'"),
-        (document('<Aim target="{battery}"/>'), "cannot be wired to the entry 'battery'"),
         (document('<Aim battery="{target}"/>'), "uses the entry 'battery' and cannot be wired to 'target'"),
         (document('<Aim battery="full"/>'), "battery of <Aim> is an entry that it uses"),
         (document('<SaySomething message="{nowhere}"/>'), "House has no such entry"),
@@ -663,14 +598,9 @@ SUB = '<BehaviorTree ID="Sub"><SaySomething message="{word}"/></BehaviorTree>'
         (document("<Sequence/>"), "<Sequence> needs a child"),
         (document(f'<Sequence memory="true">{SAY}</Sequence>'), "<Sequence> has no attribute memory"),
         (document(f"<Selector>{SAY}</Selector>"), "<Selector> is written Fallback or ReactiveFallback"),
-        (document(f'<Decorator ID="FailureIsSuccess">{SAY}</Decorator>'), "is written ForceSuccess"),
         (document(f"<Inverter>{SAY}{SAY}</Inverter>"), "<Inverter> has one child, not 2"),
-        (document("<Inverter/>"), "<Inverter> has one child, not 0"),
         (document(f"<Repeat>{SAY}</Repeat>"), "<Repeat> needs the attribute num_cycles"),
         (document(f'<Repeat num_cycles="0">{SAY}</Repeat>'), "0 is neither 1 or more nor -1"),
-        (document(f'<Repeat num_cycles="1.5">{SAY}</Repeat>'), "'1.5' is not of type int"),
-        (document(f'<Repeat num_success="2">{SAY}</Repeat>'), "needs the attribute num_cycles"),
-        (document(f'<RetryUntilSuccesful num_attempts="2">{SAY}</RetryUntilSuccesful>'), "no node is called"),
         (document('<Sleep msec="-1"/>'), "-1 is negative"),
         (document('<Sleep msec="{time}"/>'), "msec of <Sleep> is a number"),
         (document(f'<Parallel threshold="1">{SAY}</Parallel>'), "no attribute threshold"),
@@ -681,13 +611,11 @@ SUB = '<BehaviorTree ID="Sub"><SaySomething message="{word}"/></BehaviorTree>'
         (document(f'<SubTree ID="Sub">{SAY}</SubTree>', SUB), "<SubTree> has no children"),
         (document('<SubTree ID="Sub" wrod="x"/>', SUB), "Sub has no such port; it has word"),
         (document('<SubTree ID="Sub" _autoremap="maybe"/>', SUB), "_autoremap is true or false"),
-        (document('<SubTree ID="Sub" _odd="x"/>', SUB), "<SubTree> has no attribute _odd"),
         (document('<SubTree ID="Sub"/>', SUB), "the tree 'Sub' is not given 'word'"),
         (document('<SubTree ID="patrol" length="far"/>'), "patrol: length: 'far' is not of type float"),
         (document('<SubTree ID="patrol" speed="1"/>'), "patrol has no such parameter"),
         (document(SAY, "<TreeNodesModel/><TreeNodesModel/>"), "two <TreeNodesModel>"),
         (document(SAY, "<TreeNodesModel><Port/></TreeNodesModel>"), "<TreeNodesModel> has no <Port>"),
-        (document(SAY, "<TreeNodesModel><Action/></TreeNodesModel>"), "<Action> needs the attribute ID"),
         (
             document(SAY, '<TreeNodesModel><Action ID="A"><port/></Action></TreeNodesModel>'),
             "a model has ports, no <port>",
