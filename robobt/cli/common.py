@@ -162,13 +162,10 @@ def world_of(address: str, publish: bool = False) -> Iterator[WorldFactory]:
         factories.append(PublishingFactory(factories[0]))
     with ExitStack() as stack:
         for factory in factories:
-            stack.callback(getattr(factory, "close", _nothing))
+            if hasattr(factory, "close"):
+                stack.callback(factory.close)
         stack.enter_context(at_the_latest_after(_ENDING_TIMEOUT))
         yield factories[-1]
-
-
-def _nothing() -> None:
-    """Close a factory that holds nothing."""
 
 
 def unknown(name: str, registry: Registry[_T]) -> typer.BadParameter:

@@ -23,7 +23,6 @@ from robobt.cli.common import (
 )
 from robobt.cli.compile_ahead import compile_before_first_match
 from robobt.cli.match_summary import TREES_FAILED, print_summary, tell_failures
-from robobt.cli.option_groups.layers import layer_names
 from robobt.cli.option_groups.match import KeptTrials, MatchVenue, Trees, Trials
 from robobt.cli.option_groups.page import Page
 from robobt.cli.option_groups.refereeing import Refereeing
@@ -123,8 +122,7 @@ def _play_on(
 
     def make(trial: int) -> MatchLoop:
         recorded = records.pop() if records else None
-        layers = layer_names(kept.record_layers)
-        return MatchLoop(loaded, trial_seed(start, trial), factory, recorded, trial, referees, layers)
+        return MatchLoop(loaded, trial_seed(start, trial), factory, recorded, trial, referees, kept.layers)
 
     with page.server() as server, world_of(where.world, where.publish) as factory:
         from robobt.live.session import Live
@@ -148,7 +146,7 @@ def _play_trials(
 
     count = run.count(loaded)
     processes = run.processes(count, where.alone)
-    file, layers = kept.recording(loaded.name, count), layer_names(kept.record_layers)
+    file = kept.recording(loaded.name, count)
     if kept.identify is not None:
         need("tournament", "google.protobuf", "pyarrow", "scipy")
         check_ending("--identify", kept.identify, ".yaml", ".yml")
@@ -173,7 +171,7 @@ def _play_trials(
                 processes,
                 run.seed,
                 kept.out,
-                {} if recording is None else {kept.trial: Recorded(recording, layers)},
+                {} if recording is None else {kept.trial: Recorded(recording, kept.layers)},
                 lambda _: progress.advance(),
                 referees,
                 play,

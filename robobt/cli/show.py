@@ -13,7 +13,7 @@ from robobt.cli.option_groups.page import Page
 from robobt.cli.options import option
 from robobt.cli.outputs import RECORDING, make_folders
 from robobt.cli.recordings import LOGS
-from robobt.cli.shown.lists import REGISTERED, list_registered, registered
+from robobt.cli.shown.lists import REGISTERED, list_registered, registry_of
 from robobt.cli.shown.play import TREE_FORMATS, Examined, show_play
 from robobt.cli.shown.recording import RECORDING_FORMATS, Shown, show_recording
 
@@ -147,10 +147,12 @@ def _kind_of(name: str) -> ThingKind:
     from robobt.models.find import find_model
 
     play = name.partition(":")[0]
-    found = [ThingKind.PLAY] if registered("plays", play) else []
+    found = [ThingKind.PLAY] if play in registry_of("plays") else []
     found += [ThingKind.SCENARIO] if name in bundled_scenarios() else []
     found += [
-        kind for kind, plural in _PLURALS.items() if kind is not ThingKind.TASK and registered(plural, name)
+        kind
+        for kind, plural in _PLURALS.items()
+        if kind is not ThingKind.TASK and name in registry_of(plural)
     ]
     found += [ThingKind.TASK] if _is_task(name) else []
     try:
@@ -165,7 +167,7 @@ def _kind_of(name: str) -> ThingKind:
         there = f"{name!r} is a {' and a '.join(found)}; choose with --kind"
         raise typer.BadParameter(there, param_hint="NAME")
     if not found:
-        others = [kind.value for kind, plural in _PLURALS.items() if registered(plural, play)]
+        others = [kind.value for kind, plural in _PLURALS.items() if play in registry_of(plural)]
         there = f"{play!r} is a {others[0]}, which takes no parameters here" if others else _nothing(play)
         raise typer.BadParameter(there, param_hint="NAME")
     return found[0]
@@ -204,8 +206,8 @@ def _kind_in_python(name: str) -> ThingKind:
         return ThingKind.PLAY
     with within(owner):
         kinds = [kind for kind in _PLURALS if kind is not ThingKind.TASK]
-        found = [kind for kind in kinds if registered(_PLURALS[kind], inner)]
-        return found[0] if found and not registered("plays", inner) else ThingKind.PLAY
+        found = [kind for kind in kinds if inner in registry_of(_PLURALS[kind])]
+        return found[0] if found and inner not in registry_of("plays") else ThingKind.PLAY
 
 
 def _is_task(name: str) -> bool:
@@ -213,24 +215,23 @@ def _is_task(name: str) -> bool:
     from robobt.config.extras import MissingExtraError
 
     try:
-        return registered("tasks", name)
+        return name in registry_of("tasks")
     except MissingExtraError:
         return False
 
 
 def _nothing(name: str) -> str:
     """Say that nothing has this name, with the reason where a package failed, or with names close to it."""
-    from robobt.cli.shown.lists import names_of, problem_with
     from robobt.config.errors import close_names
     from robobt.config.resources import bundled_scenarios
     from robobt.models.find import list_models, model_folders
 
     kinds = [kind for kind in REGISTERED if kind != "tasks"]
     for kind in kinds:
-        if problem := problem_with(kind, name):
+        if problem := registry_of(kind).problem_with(name):
             return problem
     models = [path.stem for folder in model_folders() for path in list_models(folder)]
-    known = [*bundled_scenarios(), *models, *(one for kind in kinds for one in names_of(kind))]
+    known = [*bundled_scenarios(), *models, *(one for kind in kinds for one in registry_of(kind))]
     meant = close_names(name, dict.fromkeys(known))
     guess = f"did you mean {' or '.join(meant)}? " if meant else ""
     return f"nothing is called {name!r}; {guess}'robobt list plays' and so on list what there is"

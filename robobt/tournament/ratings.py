@@ -43,7 +43,6 @@ def bradley_terry(
     names: Sequence[str],
     scores: Iterable[tuple[str, str, float]],
     reference: str | None = None,
-    confidence: float = 0.95,
 ) -> dict[str, Rating]:
     """Fit the strengths under which the results are most likely.
 
@@ -57,7 +56,6 @@ def bradley_terry(
         names: all rated entrants.
         scores: for each match the two that met, and the first one's score: 1, 0.5 or 0.
         reference: the entrant with strength 0; by default the mean strength is 0.
-        confidence: of the intervals.
 
     Returns:
         the ratings by name.
@@ -84,7 +82,7 @@ def bradley_terry(
     contrasts -= 1.0 / len(names) if reference is None else contrasts[index[reference]]
     elo = ELO * contrasts @ strength
     spread = ELO * np.sqrt(np.maximum(0.0, np.einsum("ij,jk,ik->i", contrasts, covariance, contrasts)))
-    half = NormalDist().inv_cdf(0.5 + confidence / 2.0) * spread
+    half = NormalDist().inv_cdf(0.975) * spread
     return {
         name: Rating(float(elo[number]), float(elo[number] - half[number]), float(elo[number] + half[number]))
         for name, number in index.items()

@@ -10,7 +10,6 @@ from errno import EEXIST
 from pathlib import Path
 
 from robobt import __version__
-from robobt.match.loop import WorldFactory
 from robobt.match.results.file import scenario_digest
 from robobt.match.scenario.scenario import scenario_from
 from robobt.tournament.entrants import Entrant
@@ -21,7 +20,6 @@ from robobt.tournament.play import play_tournament
 from robobt.tournament.played import PlayedMatch
 from robobt.tournament.recordings import Keep, Recordings, file_name
 from robobt.tournament.store import MatchStore, StoreError
-from robobt.worlds import sim_world
 
 
 @dataclass(slots=True, frozen=True)
@@ -56,12 +54,8 @@ def differences(store: MatchStore, matches: Collection[PlayedMatch]) -> list[str
     return told
 
 
-def plan_of(store: MatchStore, world: WorldFactory = sim_world) -> Plan:
-    """Return the plan by which a store's matches are played again.
-
-    Args:
-        store: the store.
-        world: makes the world of a match.
+def plan_of(store: MatchStore) -> Plan:
+    """Return the plan by which the matches of a ``store`` are played again.
 
     Raises:
         StoreError: the store holds too little, its files have changed, or its matches do not repeat.
@@ -87,7 +81,7 @@ def plan_of(store: MatchStore, world: WorldFactory = sim_world) -> Plan:
             raise StoreError(store.path, "its files have changed since, or its models", f"entrants: {name}")
         entrants.append(entrant)
     rounds = 1 + max((match.round for match in store.matches()), default=0)
-    return Plan(scenario, tuple(entrants), rounds, int(played["seed"]), world=world)
+    return Plan(scenario, tuple(entrants), rounds, int(played["seed"]))
 
 
 def regenerate(
@@ -97,7 +91,6 @@ def regenerate(
     workers: int = 0,
     *,
     on_match: Callable[[Regenerated, Path], object] | None = None,
-    world: WorldFactory = sim_world,
 ) -> list[Regenerated]:
     """Play matches of a store again and record them.
 
@@ -107,7 +100,6 @@ def regenerate(
         folder: where the recordings are written, one file a match; no file of these matches is there yet.
         workers: number of processes; 0 is this process itself.
         on_match: called with each match and its recording as soon as it has been played.
-        world: makes the world of a match.
 
     Returns:
         The matches in their given order.
@@ -117,7 +109,7 @@ def regenerate(
         OSError: a recording cannot be written, or would replace a file.
         KeyboardInterrupt: it was stopped.
     """
-    plan = plan_of(store, world)
+    plan = plan_of(store)
     wanted = {match.fixture: match for match in matches if match.trace}
     recordings = Recordings(folder, Keep.ALL, plan.names[0])
     for fixture in wanted:

@@ -14,7 +14,7 @@ from robobt.tree.drawing import NodeDescription, describe, printable
 
 _ROW_SPACING, _BOX_HEIGHT, _BOX_GAP, _PICTURE_EDGE = 44.0, 34.0, 34.0, 12.0
 _NARROW, _WIDE = frozenset("fijlrtI.,:;|'!()[]{} "), frozenset("mwMW→⇉▤◇")
-_STATUS_COLOURS = {
+_BORDER_COLOURS = {
     Status.SUCCESS: "#1f9d5b",
     Status.FAILURE: "#dd4b41",
     Status.RUNNING: "#2f7df0",
@@ -118,7 +118,7 @@ def _svg_box(box: _Box, x: float, statuses: bool) -> str:
     radius = _BOX_HEIGHT / 2 if shown.kind == "leaf" else 7
     # As a style: an attribute would be weaker than the style sheet.
     ticked = statuses and status is not Status.INVALID
-    colour = f' style="stroke:{_STATUS_COLOURS[status]};stroke-width:2.4"' if ticked else ""
+    colour = f' style="stroke:{_BORDER_COLOURS[status]};stroke-width:2.4"' if ticked else ""
     faint = ' opacity="0.5"' if statuses and not ticked else ""
     base = box.y - 1.5 if shown.remark else box.y + 4.5
     glyph = f"<tspan>{_xml(shown.glyph)}</tspan> " if shown.glyph else ""

@@ -18,9 +18,8 @@ def field_svg(
     robots: Iterable[tuple[str, int, float, float, float]],
     ball: tuple[float, float],
     radii: tuple[float, float],
-    width: int = 600,
 ) -> str:
-    """Return an SVG picture ``width`` pixels wide, +x to the right and +y up.
+    """Return an SVG picture 600 pixels wide, +x to the right and +y up.
 
     Args:
         title: what it shows, for those who cannot see it.
@@ -29,11 +28,10 @@ def field_svg(
         robots: colour, number, x, y [m] and heading [rad] of each.
         ball: x, y [m].
         radii: of a robot and of the ball [m]; the ball is drawn half as large again.
-        width: of the picture [px].
     """
     x, y, side = field.length / 2.0, field.width / 2.0, field.margin
     parts = [
-        f'<svg xmlns="http://www.w3.org/2000/svg" width="{width}" '
+        '<svg xmlns="http://www.w3.org/2000/svg" width="600" '
         f'viewBox="{-x - side:g} {-y - side:g} {2 * (x + side):g} {2 * (y + side):g}" role="img">',
         f"<title>{title}</title>",
         f'<rect x="{-x - side:g}" y="{-y - side:g}" width="100%" height="100%" fill="#2e7d43"/>',

@@ -498,6 +498,9 @@ class TestTree:
         counted = told("show", "goalkeeper", "--statistics", scenario)
         assert len(counted["robots"]["blue 0"]) == len(counted["nodes"]) > 1
 
+    def test_what_a_docstring_refers_to_is_shown_by_its_name(self):
+        assert "Tick it after SelectPass in every" in robobt("show", "PassIsSteady").stdout
+
     def test_a_skill_is_told_to_be_one_where_parameters_are_given(self):
         said = " ".join(complaint("show", "KickToTarget:speed_factor=2", code=2).split())
         assert "'KickToTarget' is a skill, which takes no parameters here" in said

@@ -9,7 +9,7 @@ import pytest
 from typer.testing import CliRunner, Result
 
 from robobt.cli import app
-from robobt.cli.option_groups.refereeing import MatchExtent, Who, refereed
+from robobt.cli.option_groups.refereeing import MatchExtent, Refereeing, Who
 from robobt.league.referee.process import VARIABLE
 from robobt.match import load_scenario
 from tests.league.referee.conftest import program as program
@@ -43,17 +43,17 @@ def test_a_program_is_only_named_for_the_official_referee() -> None:
 
 
 def test_none_plays_freely_and_own_where_the_scenario_has_no_referee() -> None:
-    free, _ = refereed(load_scenario(WITH), Who.NONE, None, None)
+    free, _ = Refereeing(Who.NONE).of(load_scenario(WITH))
     assert free.referee is None
-    own, _ = refereed(load_scenario(WITHOUT), Who.OWN, None, None)
+    own, _ = Refereeing(Who.OWN).of(load_scenario(WITHOUT))
     assert own.referee is not None
     for name in (WITH, WITHOUT):
         as_it_is = load_scenario(name)
-        assert refereed(as_it_is, None, None, None)[0] == as_it_is
+        assert Refereeing().of(as_it_is)[0] == as_it_is
 
 
 def test_a_full_match_has_two_halves_of_five_minutes() -> None:
-    full, _ = refereed(load_scenario(WITH), None, None, MatchExtent.FULL)
+    full, _ = Refereeing(stages=MatchExtent.FULL).of(load_scenario(WITH))
     assert full.referee is not None
     assert full.referee.half_length == 300.0
     assert full.ends.time_limit >= 3600.0

@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from robobt.cli.common import Seed, Where, cores
-from robobt.cli.option_groups.layers import Layers
 from robobt.cli.options import option
 from robobt.cli.outputs import PAGE, PAGES, RECORDING
 
@@ -71,7 +70,9 @@ class KeptTrials:
         int | None,
         option("--record-trial", f"; without --record the file is SCENARIO-N{RECORDING}", min=0),
     ] = None
-    record_layers: Layers = ""
+    record_layers: Annotated[
+        str, option("--record-layers", ": names separated by commas, as in 'paths, targets, observation'")
+    ] = ""
     identify: Annotated[
         Path | None, option("--identify", " (.yaml), as 'robobt record identify' does; without --record too")
     ] = None
@@ -83,6 +84,11 @@ class KeptTrials:
             metavar="FILE",
         ),
     ] = None
+
+    @property
+    def layers(self) -> frozenset[str]:
+        """Layers of the skills' drawings that are recorded."""
+        return frozenset({name.strip() for name in self.record_layers.split(",")} - {""})
 
     @property
     def trial(self) -> int:

@@ -58,44 +58,38 @@ class Refereeing:
     stages: Annotated[MatchExtent | None, option("--stages")] = None
 
     def of(self, scenario: Scenario) -> tuple[Scenario, RefereeFactory]:
-        """Return the scenario as these options change it, and who makes its referee; see :func:`refereed`."""
-        return refereed(scenario, self.referee, self.game_controller, self.stages)
+        """Return the scenario as these options change it, and who makes its referee.
+
+        Raises:
+            GameControllerError: the official controller is asked for and is not there, or does not start.
+        """
+        from robobt.match.referee.settings import RefereeSettings
+        from robobt.match.refereeing import own_referee
+
+        who = self.referee
+        if self.game_controller is not None and who is not Who.OFFICIAL:
+            raise typer.BadParameter("is for --referee official", param_hint="--game-controller")
+        if who is Who.NONE:
+            scenario = scenario.without_referee()
+        elif who is not None and scenario.referee is None:
+            scenario = scenario.model_copy(update={"referee": RefereeSettings()})
+        if self.stages is MatchExtent.FULL:
+            if scenario.referee is None:
+                raise typer.BadParameter("needs a referee, who counts the time", param_hint="--stages")
+            settings = scenario.referee.model_copy(update={"half_length": HALF})
+            ends = scenario.ends.model_copy(update={"time_limit": _LONGEST_MATCH, "score_limit": None})
+            scenario = scenario.model_copy(update={"referee": settings, "ends": ends})
+        if who is not Who.OFFICIAL:
+            return scenario, own_referee
+        from robobt.league.referee.official import OfficialRefereeFactory
+        from robobt.league.referee.process import check_game_controller, find_game_controller
+
+        program = find_game_controller(self.game_controller)
+        check_game_controller(program)
+        return scenario, OfficialRefereeFactory(program)
 
     def of_tournament(self, scenario: Scenario) -> tuple[Scenario, RefereeFactory]:
         """Return the same for matches that count, which have a referee."""
         if self.referee is Who.NONE:
             raise typer.BadParameter("must be own or official", param_hint="--referee")
         return self.of(scenario)
-
-
-def refereed(
-    scenario: Scenario, who: Who | None, controller: Path | None, stages: MatchExtent | None
-) -> tuple[Scenario, RefereeFactory]:
-    """Return the scenario as these options change it, and who makes its referee.
-
-    Raises:
-        GameControllerError: the official controller is asked for and is not there, or does not start.
-    """
-    from robobt.match.referee.settings import RefereeSettings
-    from robobt.match.refereeing import own_referee
-
-    if controller is not None and who is not Who.OFFICIAL:
-        raise typer.BadParameter("is for --referee official", param_hint="--game-controller")
-    if who is Who.NONE:
-        scenario = scenario.without_referee()
-    elif who is not None and scenario.referee is None:
-        scenario = scenario.model_copy(update={"referee": RefereeSettings()})
-    if stages is MatchExtent.FULL:
-        if scenario.referee is None:
-            raise typer.BadParameter("needs a referee, who counts the time", param_hint="--stages")
-        settings = scenario.referee.model_copy(update={"half_length": HALF})
-        ends = scenario.ends.model_copy(update={"time_limit": _LONGEST_MATCH, "score_limit": None})
-        scenario = scenario.model_copy(update={"referee": settings, "ends": ends})
-    if who is not Who.OFFICIAL:
-        return scenario, own_referee
-    from robobt.league.referee.official import OfficialRefereeFactory
-    from robobt.league.referee.process import check_game_controller, find_game_controller
-
-    program = find_game_controller(controller)
-    check_game_controller(program)
-    return scenario, OfficialRefereeFactory(program)

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import inspect
 import json
+import re
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, TypeVar
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
 
 from rich.markup import escape
 
@@ -21,8 +23,6 @@ if TYPE_CHECKING:
     from robobt.tree.parameters import Parameter
     from robobt.tree.registry import Registry
 
-_Names = TypeVar("_Names", bound="Registry[Any]")
-
 
 def list_registered(kind: str, name: str | None, *, as_json: bool) -> None:
     """List plays, skills, raters, policies or tasks, or describe the one of that name.
@@ -30,45 +30,28 @@ def list_registered(kind: str, name: str | None, *, as_json: bool) -> None:
     Raises:
         typer.BadParameter: there is none of that name.
     """
-    listing = _KINDS[kind]
-    _list(kind, listing.registry(), name, as_json, listing.describe)
+    registry, describe = registry_of(kind), _KINDS[kind][1]
+    if name is not None and name not in registry:
+        raise unknown(name, registry)
+    entries = {entry: describe(registry, entry) for entry in (registry if name is None else [name])}
+    if as_json:
+        things = [_data(entry, one, registry.source(entry)) for entry, one in entries.items()]
+        print_json({kind: things, "problems": list(registry.problems)})
+    else:
+        for entry, one in entries.items():
+            _print(entry, one, registry.source(entry), whole=name is not None)
+    for problem in registry.problems:
+        warn(problem)
 
 
-def _plays() -> Registry[Any]:
-    from robobt.plays import PLAYS
-
-    return PLAYS
-
-
-def _skills() -> Registry[Any]:
-    import robobt.plays  # noqa: F401  (baselines have leaves of their own)
-    from robobt.skills import SKILLS
-
-    return SKILLS
-
-
-def _raters() -> Registry[Any]:
-    from robobt.skills.aim.raters import RATERS
-
-    return RATERS
-
-
-def _policies() -> Registry[Any]:
-    from robobt.skills.ball.go_to_ball import GO_TO_BALL_POLICIES
-
-    return GO_TO_BALL_POLICIES
-
-
-def _tasks() -> Tasks:
-    from robobt.learning import TASKS
-
-    return TASKS
-
-
-def _challenges() -> Registry[Any]:
-    from robobt.challenges import CHALLENGES
-
-    return CHALLENGES
+def registry_of(kind: str) -> Registry[Any]:
+    """Return where all things of that kind are registered by name."""
+    if kind == "skills":
+        # The baselines have leaves of their own.
+        import_module("robobt.plays")
+    module, _, name = _KINDS[kind][0].partition(":")
+    registry: Registry[Any] = getattr(import_module(module), name)
+    return registry
 
 
 def _challenge(challenges: Registry[type[Challenge]], name: str) -> _Listed:
@@ -126,56 +109,18 @@ class _Listed:
     condition: bool | None = None
 
 
-def _list(
-    kind: str, registry: _Names, name: str | None, as_json: bool, listed: Callable[[_Names, str], _Listed]
-) -> None:
-    if name is not None and name not in registry:
-        raise unknown(name, registry)
-    names = list(registry) if name is None else [name]
-    entries = {entry: listed(registry, entry) for entry in names}
-    if as_json:
-        things = [_data(entry, one, registry.source(entry)) for entry, one in entries.items()]
-        print_json({kind: things, "problems": list(registry.problems)})
-    else:
-        for entry, one in entries.items():
-            _print(entry, one, registry.source(entry), whole=name is not None)
-    for problem in registry.problems:
-        warn(problem)
-
-
-@dataclass(frozen=True)
-class _Listing:
-    """How a kind of thing is listed: where it is registered, and what is said of each."""
-
-    registry: Callable[[], Registry[Any]]
-    describe: Callable[[Any, str], _Listed]
-
-
-_KINDS = {
-    "plays": _Listing(_plays, _play),
-    "skills": _Listing(_skills, _skill),
-    "raters": _Listing(_raters, _with_settings),
-    "policies": _Listing(_policies, _with_settings),
-    "tasks": _Listing(_tasks, _task),
-    "challenges": _Listing(_challenges, _challenge),
+_KINDS: dict[str, tuple[str, Callable[[Any, str], _Listed]]] = {
+    "plays": ("robobt.plays:PLAYS", _play),
+    "skills": ("robobt.skills:SKILLS", _skill),
+    "raters": ("robobt.skills.aim.raters:RATERS", _with_settings),
+    "policies": ("robobt.skills.ball.go_to_ball:GO_TO_BALL_POLICIES", _with_settings),
+    "tasks": ("robobt.learning:TASKS", _task),
+    "challenges": ("robobt.challenges:CHALLENGES", _challenge),
 }
+"""Of each kind of thing where it is registered, and what is said of each."""
+
 REGISTERED = tuple(_KINDS)
 """The kinds of things that are registered by name."""
-
-
-def names_of(kind: str) -> list[str]:
-    """Return the names of all things of that kind."""
-    return list(_KINDS[kind].registry())
-
-
-def problem_with(kind: str, name: str) -> str | None:
-    """Return why another package failed to bring what has this name, None where none did."""
-    return _KINDS[kind].registry().problem_with(name)
-
-
-def registered(kind: str, name: str) -> bool:
-    """Return whether something of that kind has this name."""
-    return name in _KINDS[kind].registry()
 
 
 def _data(name: str, listed: _Listed, package: str | None) -> dict[str, object]:
@@ -215,7 +160,8 @@ def _print(name: str, listed: _Listed, package: str | None, *, whole: bool) -> N
 
 
 def _doc(thing: object) -> str:
-    return inspect.getdoc(thing) or ""
+    """Return a docstring with the last names of what it refers to, without the roles of Sphinx."""
+    return re.sub(r":\w+:`~?(?:[\w.]+\.)?(\w+)`", r"\1", inspect.getdoc(thing) or "")
 
 
 def _plain(value: object) -> object:

@@ -14,8 +14,6 @@ from rich.markup import escape
 from robobt.cli.common import console, print_json, say, table, warn
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
     from robobt.models.file import ModelFile
 
 
@@ -128,6 +126,7 @@ def _print_table(files: list[ModelFile]) -> None:
 
 def _print_whole(file: ModelFile) -> None:
     card = file.card
+    limits = {} if card.limits is None else card.limits.model_dump(exclude_none=True)
     say(f"{card.name}: {card.description or card.skill}")
     lines = {
         "file": f"{file.path} ({file.format}, {file.size} bytes)",
@@ -138,7 +137,7 @@ def _print_whole(file: ModelFile) -> None:
         + in_short(card.observation.features),
         "outputs": ", ".join([f"{one.name} ({_figure(one.scale, one.unit)})" for one in card.outputs]),
         "period": "" if card.period is None else f"{card.period:g} s",
-        "limits": _assignments({} if card.limits is None else card.limits.model_dump(exclude_none=True)),
+        "limits": ", ".join([f"{name} {value}" for name, value in limits.items()]),
         "seed": "" if card.seed is None else str(card.seed),
         "code": f"robobt {card.code_version or 'unknown'}, commit {card.code_commit or 'unknown'}",
         "written by": card.created_by,
@@ -191,7 +190,3 @@ def print_held_out(file: ModelFile) -> None:
 
 def _figure(value: float, unit: str) -> str:
     return f"{value:.4g}" if unit == "1" else f"{value:.4g} {unit}"
-
-
-def _assignments(settings: Mapping[str, object]) -> str:
-    return ", ".join([f"{name} {value}" for name, value in settings.items()])

@@ -15,7 +15,7 @@ from robobt.cli.option_groups.scenario import parse_play
 from robobt.cli.options import option
 
 if TYPE_CHECKING:
-    from robobt.tree import Behaviour
+    from robobt.tree import Behaviour, Finding
 
 
 TREE_FORMATS = (".svg", ".dot", ".yaml", ".xml")
@@ -62,9 +62,12 @@ def show_play(text: str, out: Path | None, examined: Examined, *, as_json: bool)
             say(f"Tree: {out}")
     data: dict[str, object] = {"play": play}
     wiring = _wiring(root)
-    findings = _findings(root) if examined.lint else []
+    findings: list[Finding] = []
     if examined.lint:
-        data.update(findings=findings, wiring=wiring)
+        from robobt.tree.devtools import lint_tree
+
+        findings = lint_tree(root)
+        data.update(findings=[asdict(found) for found in findings], wiring=wiring)
     else:
         for problem in wiring:
             warn(problem)
@@ -73,7 +76,8 @@ def show_play(text: str, out: Path | None, examined: Examined, *, as_json: bool)
     if as_json:
         print_json({**data, "nodes": _nodes(root)})
     elif examined.lint:
-        _print_findings(wiring, findings)
+        for found in [*wiring, *findings] or ["Nothing found."]:
+            say(str(found))
     elif examined.statistics is None and out is None:
         from robobt.tree.drawing import tree_text
 
@@ -146,21 +150,6 @@ def _wiring(root: Behaviour) -> list[str]:
     except WiringError as error:
         return list(error.problems)
     return []
-
-
-def _findings(root: Behaviour) -> list[dict[str, str]]:
-    from robobt.tree.devtools import lint_tree
-
-    return [{"path": found.path, "rule": found.rule, "message": found.message} for found in lint_tree(root)]
-
-
-def _print_findings(wiring: list[str], findings: list[dict[str, str]]) -> None:
-    for problem in wiring:
-        say(problem)
-    for found in findings:
-        say(f"{found['path']}: {found['message']} [{found['rule']}]")
-    if not wiring and not findings:
-        say("Nothing found.")
 
 
 def _statistics(

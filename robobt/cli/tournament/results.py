@@ -89,7 +89,8 @@ def results(
         return
     if not found:
         raise typer.BadParameter(f"{store}: no match is left, or none was played yet")
-    names = [name for name in dict.fromkeys([*(compare or ()), *known]) if _in(name, found)]
+    there = {name for match in found for name in (match.blue, match.yellow)}
+    names = [name for name in dict.fromkeys([*(compare or ()), *known]) if name in there]
     summed = standings_of(found, names)
     if compare is not None:
         met = [one for one in summed.encounters if {one.first, one.second} == {*compare}]
@@ -116,10 +117,6 @@ def _wanted(match: PlayedMatch, entrants: list[str], outcome: str | None, lost_b
     if lost_by is not None and (lost_by not in sides or match.score(lost_by) > 0.0):
         return False
     return outcome is None or match.outcome == outcome
-
-
-def _in(name: str, matches: Sequence[PlayedMatch]) -> bool:
-    return any(name in (match.blue, match.yellow) for match in matches)
 
 
 def _list(matches: Sequence[PlayedMatch]) -> None:

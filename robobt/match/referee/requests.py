@@ -45,9 +45,9 @@ class Requests:
         state.deadline = state.time
         return True
 
-    def substitution(self, team: Team, wanted: bool = True) -> None:
-        """Request a substitution at the next STOP, or withdraw the request."""
-        self._state.records[team].wants_substitution = wanted
+    def substitution(self, team: Team) -> None:
+        """Request a substitution at the next STOP."""
+        self._state.records[team].wants_substitution = True
 
     def advantage(self, team: Team, play_on: bool) -> None:
         """Set whether play continues while the opponents have too many robots."""

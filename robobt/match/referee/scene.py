@@ -140,11 +140,11 @@ class RefereeScene:
                 return robot
         return None
 
-    def pushed(self, team: Team, robot: RobotState, reach: float = 0.19) -> bool:
+    def pushed(self, team: Team, robot: RobotState) -> bool:
         """Return whether an opponent touches this robot and so may have pushed it there."""
         for other in self.team(team.other):
             dx, dy = other.x - robot.x, other.y - robot.y
-            if dx * dx + dy * dy < reach * reach:
+            if dx * dx + dy * dy < _PUSHES_WITHIN * _PUSHES_WITHIN:
                 return True
         return False
 
@@ -171,6 +171,9 @@ def _close_pairs(frame: Frame, reach: float) -> Iterator[tuple[RobotState, Robot
             if hypot(dx, yellow.y - blue.y) <= reach:
                 yield blue, yellow
 
+
+_PUSHES_WITHIN = 0.19
+"""Distance between centres within which a robot may push another [m]."""
 
 _PHASES = {
     RefereeCommand.HALT: PlayPhase.HALT,

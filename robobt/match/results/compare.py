@@ -122,7 +122,7 @@ def _figures(results: Sequence[MatchResult], against: AgainstFirst | None) -> Co
     failed = [(name, robot) for result in results for name, robot in result.robots.items() if robot.errors]
     return Compared(
         len(results),
-        _distinct(results),
+        len({result.trace for result in results}),
         Rate.of([_scores(result) for result in results], [result.trace for result in results]),
         dict(Counter(result.outcome for result in results).most_common()),
         Spread.of(map(_to_ball, results)),
@@ -131,10 +131,6 @@ def _figures(results: Sequence[MatchResult], against: AgainstFirst | None) -> Co
         f"{failed[0][0]}: {failed[0][1].first_error}" if failed else None,
         against,
     )
-
-
-def _distinct(results: Sequence[MatchResult]) -> int:
-    return len({result.trace for result in results})
 
 
 def _scores(result: MatchResult) -> bool:

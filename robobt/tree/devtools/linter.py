@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 from py_trees.behaviour import Behaviour
@@ -46,42 +46,31 @@ def lint_tree(root: Behaviour) -> list[Finding]:
     | ``shared-blackboard`` | nodes on the blackboard that all trees of the process share |
     """
     return [
-        Finding(node_path(node), rule, message)
-        for node in preorder(root)
-        for rule, check in _LINT_RULES.items()
-        for message in check(node)
+        Finding(node_path(node), rule, message) for node in preorder(root) for rule, message in _faults(node)
     ]
 
 
-def _unbounded(node: Behaviour) -> Iterator[str]:
+def _faults(node: Behaviour) -> Iterator[tuple[str, str]]:
+    """Yield the rule and the message of each fault of a node."""
     if isinstance(node, Repeat) and (node.num_success < 0 or node.num_success >= FOR_EVER):
-        yield "repeats its child for ever"
-    if isinstance(node, Retry):
-        if node.num_failures < 0:
-            yield "is meant to try for ever, but fails with its child's first failure: Retry has no -1"
-        elif node.num_failures >= FOR_EVER:
-            yield "tries its child again for ever"
-
-
-def _wall_clock(node: Behaviour) -> Iterator[str]:
+        yield "unbounded", "repeats its child for ever"
+    if isinstance(node, Retry) and node.num_failures < 0:
+        yield (
+            "unbounded",
+            "is meant to try for ever, but fails with its child's first failure: Retry has no -1",
+        )
+    elif isinstance(node, Retry) and node.num_failures >= FOR_EVER:
+        yield "unbounded", "tries its child again for ever"
     for kind, instead in ((WallClockTimer, "Wait"), (WallClockTimeout, "Timeout")):
         if isinstance(node, kind):
-            yield f"goes by the wall clock, not the match's; take robobt.tree.nodes.{instead}"
-
-
-def _global_random(node: Behaviour) -> Iterator[str]:
+            yield (
+                "wall-clock",
+                f"goes by the wall clock, not the match's; take robobt.tree.nodes.{instead}",
+            )
     if isinstance(node, ProbabilisticBehaviour):
-        yield "draws from the random numbers of the process, so no seed repeats it"
-
-
-def _shared_blackboard(node: Behaviour) -> Iterator[str]:
+        yield "global-random", "draws from the random numbers of the process, so no seed repeats it"
     if node.blackboards:
-        yield "is on py_trees' blackboard, which all robots of the process share; take the store"
-
-
-_LINT_RULES: dict[str, Callable[[Behaviour], Iterator[str]]] = {
-    "unbounded": _unbounded,
-    "wall-clock": _wall_clock,
-    "global-random": _global_random,
-    "shared-blackboard": _shared_blackboard,
-}
+        yield (
+            "shared-blackboard",
+            "is on py_trees' blackboard, which all robots of the process share; take the store",
+        )

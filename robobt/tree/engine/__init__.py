@@ -32,10 +32,10 @@ from robobt.tree.engine.closures import shown as shown
 from robobt.tree.engine.dispatch import compile_node as compile_node
 from robobt.tree.engine.dispatch import compile_tree as compile_tree
 from robobt.tree.engine.dispatch import register as register
+from robobt.tree.engine.dispatch import ticked_children as ticked_children
 from robobt.tree.engine.fast_tree import LEAVING as LEAVING
 from robobt.tree.engine.fast_tree import FastTree as FastTree
 from robobt.tree.engine.fast_tree import abandon as abandon
 from robobt.tree.engine.plan import Plan as Plan
 from robobt.tree.engine.plan import composite_stop as composite_stop
 from robobt.tree.engine.plan import replan as replan
-from robobt.tree.engine.reach import ticked_children as ticked_children

@@ -12,7 +12,7 @@ from robobt.tree.engine.closures import BringsClosures, Marks, Stop, Tick, Visit
 
 Make: TypeAlias = Callable[[Any, Visit | None], tuple[Tick, Stop]]
 Reach: TypeAlias = Literal["all", "first", "some"]
-"""The children that a tick of a node reaches, see :func:`~robobt.tree.engine.reach.ticked_children`."""
+"""The children that a tick of a node reaches, see :func:`ticked_children`."""
 
 
 _N = TypeVar("_N", bound=Behaviour)
@@ -79,6 +79,18 @@ def known_as(node: Behaviour) -> Known:
         if cls.tick is known.tick and cls.stop is known.stop:
             return known
     return _AS_IT_BRINGS if _brings_closures(cls) else AS_IT_IS
+
+
+def ticked_children(node: Behaviour) -> Reach:
+    """Return which children a tick of this node reaches, among those with a status afterwards.
+
+    "all": all of them. "first": those up to the first that succeeded or runs. "some":
+    their statuses do not tell, for a child may keep that of an earlier tick, or one
+    with a way of its own may show another than it had when its parent looked.
+    """
+    if any(known_as(child) is AS_IT_IS for child in node.children):
+        return "some"
+    return known_as(node).reach(node)
 
 
 def _brings_closures(cls: type[Behaviour]) -> bool:

@@ -183,20 +183,10 @@ def _one_shot() -> NodeType:
     )
 
 
-def _repeat() -> NodeType:
-    """Return the type of py_trees' Repeat with its number of times checked."""
-    return _with_hint(
-        node_type(decorators.Repeat), "num_success", Annotated[int, AfterValidator(_times_or_for_ever)]
-    )
-
-
-def _retry() -> NodeType:
-    """Return the type of py_trees' Retry, which has no number for without end: below 1 it fails at once."""
-    return _with_hint(node_type(decorators.Retry), "num_failures", Annotated[int, AfterValidator(_times)])
-
-
-def _with_hint(known: NodeType, name: str, hint: object) -> NodeType:
-    return replace(known, parameters={**known.parameters, name: Parameter(name, hint)})
+def _counted(cls: type[Behaviour], name: str, check: Callable[[int], int]) -> NodeType:
+    """Return the type of py_trees' Repeat or Retry with its number of times checked."""
+    known, counted = node_type(cls), Parameter(name, Annotated[int, AfterValidator(check)])
+    return replace(known, parameters={**known.parameters, name: counted})
 
 
 def _times_or_for_ever(number: int) -> int:
@@ -206,6 +196,7 @@ def _times_or_for_ever(number: int) -> int:
 
 
 def _times(number: int) -> int:
+    # Retry has no number for without end: below 1 it fails at once.
     if number < 1:
         raise PydanticCustomError("times", "Should be 1 or more; FailureIsRunning tries without end")
     return number
@@ -240,6 +231,12 @@ _PLAIN_CLASSES: tuple[type[Behaviour], ...] = (
 
 CONTROL: Mapping[str, NodeType] = {
     known.name: known
-    for known in (_parallel(), _one_shot(), _repeat(), _retry(), *(node_type(cls) for cls in _PLAIN_CLASSES))
+    for known in (
+        _parallel(),
+        _one_shot(),
+        _counted(decorators.Repeat, "num_success", _times_or_for_ever),
+        _counted(decorators.Retry, "num_failures", _times),
+        *(node_type(cls) for cls in _PLAIN_CLASSES),
+    )
 }
 """The control nodes, and leaves without a task of their own, that every file may name."""
