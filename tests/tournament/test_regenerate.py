@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import shutil
 import sqlite3
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -166,5 +167,5 @@ def test_goals_and_cards_are_kept_with_their_times_and_no_other_event() -> None:
 
 def test_a_plan_comes_back_with_its_rounds_and_seed(stored: Path) -> None:
     with MatchStore(stored) as store:
-        again = plan_of(store, PlainWorld)
+        again = replace(plan_of(store), world=PlainWorld)
     assert (again.rounds, again.seed, again.names) == (3, 3, ["at 2", "at 1"])
