@@ -198,9 +198,9 @@ class Beside:
 
 def compare(seconds: float | None, seed: int, name: str = "six_v_six") -> Comparison:
     """Play under the official controller at the rules' times; all of it where ``seconds`` is None."""
-    from robobt.cli.option_groups.refereeing import MatchExtent, Who, refereed
+    from robobt.cli.option_groups.refereeing import MatchExtent, Refereeing, Who
 
-    scenario, _ = refereed(load_scenario(name), Who.OFFICIAL, Path(OFFICIAL), MatchExtent.FULL)
+    scenario, _ = Refereeing(Who.OFFICIAL, Path(OFFICIAL), MatchExtent.FULL).of(load_scenario(name))
     if seconds is not None:
         scenario = scenario.lasting(seconds)
     made: list[Beside] = []
