@@ -107,11 +107,9 @@ def test_trials_that_are_the_same_match_are_told() -> None:
     [
         ((), "needs two variants"),
         (("--blue", "attack_main", "--blue", "", "--out", __file__), "is not a folder"),
-        (("--set", " =3"), "there is no such field"),
         (("--blue", "attack_main", "--blue", "attack_main"), "is given twice"),
         (("--blue", "attack_man", "--blue", "attack_nn"), "no play is called 'attack_man'"),
         (("--blue", ":sped=1", "--blue", "attack_nn"), "no such parameter"),
-        (("--blue", ":speed", "--blue", "attack_nn"), "takes name=value, not 'speed'"),
         (("--blue", ":speed_factor=1,speed_factor=2", "--blue", "attack_nn"), "a parameter is given twice"),
         (("--set", "ends.time=3"), "ends.time: there is no such field"),
         (("--set", "blue 0=3"), "takes a field or a parameter of the robot"),

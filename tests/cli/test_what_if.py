@@ -164,8 +164,6 @@ def test_moments_that_are_worth_nothing_are_left_out_and_counted(
         (("--at", 1.0, "--out", "moments"), "goes with --scan"),
         (("--at", 1.0, "--to", 2.0), "--to: goes with --scan"),
         (("--at", 1.0, "--from", 0.5, "--to", 2.0), "--from, --to: go with --scan"),
-        (("--at", 1.0, "--every", 0.2), "goes with --scan"),
-        (("--at", 1.0, "--moments", 2), "goes with --scan"),
         (("--at", 1.0, "--team", "red"), "must be one of 'blue', 'yellow', not 'red'"),
         (("--at", 99.0), "holds from 0 to"),
         (("--scan", "--from", 99.0), "holds from 0 to"),

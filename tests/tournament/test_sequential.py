@@ -68,9 +68,7 @@ def test_it_stops_at_the_first_bound_that_is_reached() -> None:
     [
         ((30.0, 0.0), "elo0 must be below elo1"),
         ((5.0, 5.0), "elo0 must be below elo1"),
-        ((float("nan"), 5.0), "elo0 must be below elo1"),
         ((0.0, float("inf")), "both within ±1000, not 0 and inf"),
-        ((-1e9, 0.0), "both within ±1000"),
         ((0.0, 30.0, float("nan")), "alpha must lie between"),
         ((0.0, 30.0, 0.5), "alpha must lie between"),
         ((0.0, 30.0, 0.05, 0.0), "beta must lie between"),

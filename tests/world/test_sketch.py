@@ -83,7 +83,6 @@ def test_drawings_are_bounded() -> None:
         ["", "point", 0.0, 0.0],
         ["plan", "star", 0.0, 0.0],
         ["plan", "point", 0.0],
-        ["plan", "point", 0.0, "0"],
         ["plan", "point", 0.0, True],
         ["plan", "point", 0.0, 0.0, "text"],
         ["plan", "text", 0.0, 0.0],

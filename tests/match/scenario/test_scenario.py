@@ -11,7 +11,7 @@ import pytest
 from pydantic import BaseModel
 
 from robobt.config.resources import bundled_scenarios
-from robobt.config.yaml import MAX_YAML_BYTES, MAX_YAML_DEPTH, parse_marked, write_yaml
+from robobt.config.yaml import parse_marked, write_yaml
 from robobt.match import ScenarioError, load_scenario
 from robobt.match.scenario.placing import HELD_DISTANCE
 from robobt.match.scenario.robots import RobotSetup
@@ -87,22 +87,10 @@ class TestFiles:
     @pytest.mark.parametrize(
         ("content", "expected"),
         [
-            ("name: !!python/object/apply:os.system ['ls']", ":1: the tag tag:yaml.org,2002:python"),
             ("name: !mine x", ":1: the tag !mine is not allowed"),
-            ("a: [1]\nb: *a", ":2: aliases"),
-            ("name: x\nname: y", ":2: the key 'name' is given twice"),
-            ("1: x", ":1: the key '1' is not a name"),
-            ("? [a, b]\n: x", ":1: the key"),
-            ("name: x\n---\nname: y", ":2: a second document"),
             ("- 1\n- 2", "must hold a mapping of fields"),
             ("", "must hold a mapping of fields"),
-            ("name: " + "[" * (MAX_YAML_DEPTH + 1) + "]" * (MAX_YAML_DEPTH + 1), ":1: nested deeper"),
-            ("seed: " + "9" * 5000, ":1: '9999"),
-            ("seed: 0x" + "f" * 5000, ":1: '0xff"),
-            ("seed: !!int 1", ":1: the tag tag:yaml.org,2002:int is not allowed"),
-            (b"name: \xff\xfe\x00", "is not text"),
             ("name: a\x00b", "is not text"),
-            ("# " + "x" * MAX_YAML_BYTES, "is larger than 128 KiB"),
         ],
         ids=lambda value: str(value)[:20],
     )
@@ -161,7 +149,6 @@ class TestFields:
             ({"robots": {"blue": [robot(number=-1)]}}, "robots.blue.0.number: input should be greater"),
             ({"robots": {"blue": [robot(), robot()]}}, "robots.blue.1.number: blue has two robots 0"),
             ({"robots": {}}, "robots: there is no robot"),
-            ({"robots": {"blue": []}}, "robots: there is no robot"),
             (
                 {"robots": {"green": [robot()]}},
                 "robots.green: there is no such field; there are blue, yellow",
@@ -176,12 +163,8 @@ class TestFields:
                 "robots.blue.0.colour: there is no such field; there are",
             ),
             ({"period": 1e-9}, "period: input should be greater than or equal to 0.005, not 1e-09"),
-            ({"period": float("nan")}, "period: input should be a finite number, not nan"),
-            ({"period": "fast"}, "period: input should be a valid number"),
             ({"trials": 10**9}, "trials: input should be less than or equal to 100000"),
-            ({"trials": True}, "trials: input should be a valid integer"),
             ({"ends": {"time_limit": 1e12}}, "ends.time_limit: input should be less"),
-            ({"ends": {"time_limit": float("inf")}}, "ends.time_limit: input should be"),
             ({"ends": {}}, "ends.time_limit: is missing"),
             ({"ends": {"time_limit": 1, "score_limit": 3}}, "ends.score_limit: needs the referee"),
             ({"field": "division_c"}, "field: no field is called 'division_c'; there are division_a"),
@@ -195,11 +178,6 @@ class TestFields:
             ({"referee": "on"}, "referee: input should be"),
             ({"referee": {"opening_spot": [50, 0]}}, "referee.opening_spot: (50, 0) lies outside the field"),
             (
-                {"referee": {"opening_spot": ["1", 0]}},
-                "referee.opening_spot.0: input should be a valid number",
-            ),
-            ({"referee": {"kick_timeout": -1}}, "referee.kick_timeout: input should be greater"),
-            (
                 {"robots": {"blue": [robot(), robot(1)]}, "referee": {"max_robots": 1}},
                 "referee.max_robots: is 1, but blue has 2 robots",
             ),
@@ -209,8 +187,6 @@ class TestFields:
                 "referee.opening: waits for blue's goalkeeper, which is not there; give one",
             ),
             ({"referee": {"shoot_out": True}}, "referee.shoot_out: waits for yellow's goalkeeper"),
-            ({"seed": -1}, "seed: input should be greater"),
-            ({"seed": 2**60}, "seed: input should be less"),
         ],
         ids=lambda value: str(value)[:40],
     )
@@ -221,9 +197,7 @@ class TestFields:
         ("params", "expected"),
         [
             ({"sped": 1}, "params.sped: scripted has no such parameter; it has speed, kick, breaks, corner"),
-            ({"speed": "1"}, "params.speed: input should be a valid number, not '1'"),
             ({"speed": True}, "params.speed: input should be a valid number, not True"),
-            ({"speed": float("nan")}, "params.speed: input should be a finite number, not nan"),
             ({"corner": [1]}, "params.corner.1: field required, not [1]"),
             ({"corner": [1, "b"]}, "params.corner.1: input should be a valid number, not 'b'"),
             ({"speed": -1}, "params.speed: speed must not be negative"),
