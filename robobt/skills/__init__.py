@@ -109,12 +109,3 @@ from robobt.skills.team.select_support_position import SelectSupportPosition as 
 from robobt.tree.discovery import import_all
 
 import_all(__name__, __path__)
-
-_OF_BASELINES = {"IsAttacker": "is_attacker", "MarkOpponent": "mark_opponent"}
-
-
-def __getattr__(name: str) -> object:
-    if name in _OF_BASELINES:
-        place = f"robobt.plays.baselines.{_OF_BASELINES[name]}"
-        raise ImportError(f"{name} belongs to the team of November 2026: import it from {place}")
-    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

@@ -72,11 +72,5 @@ def test_every_skill_below_the_package_is_entered() -> None:
     assert {cls.__name__ for cls in found - bases} == set(SKILLS)
 
 
-@pytest.mark.parametrize("name", ["IsAttacker", "MarkOpponent"])
-def test_where_a_skill_of_the_baselines_is_now_is_told(name: str) -> None:
-    with pytest.raises(ImportError, match=f"import it from {BASELINES}.{snake_case(name)}"):
-        getattr(robobt.skills, name)
-
-
 def snake_case(name: str) -> str:
     return "".join(f"_{letter.lower()}" if letter.isupper() else letter for letter in name).lstrip("_")

@@ -43,7 +43,5 @@ class PassIsSteady(Condition):
         if not self._steady.update(pass_ is not None, self.frame.time):
             self.store.pass_ = None
             return self.fail("no pass for long enough")
-        if self._last is None:
-            return self.fail("no pass yet")
         self.store.pass_ = self._last
         return self.succeed()

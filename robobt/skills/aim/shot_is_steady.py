@@ -43,7 +43,5 @@ class ShotIsSteady(Condition):
         if not self._steady.update(shot is not None, self.frame.time):
             self.store.shot = None
             return self.fail("no shot for long enough")
-        if self._last is None:
-            return self.fail("no shot yet")
         self.store.shot = self._last
         return self.succeed()

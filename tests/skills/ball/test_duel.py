@@ -6,10 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from robobt.models.file import ModelError
 from robobt.skills import Duel
 from robobt.testing import frame, robot
-from robobt.tree import Status
 from tests.models.made_models import network, team_card, write_model
 from tests.skills.fixed_world import Alone
 from tests.skills.side_by_side import the_leaf_does_what_it_does_in_training
@@ -35,10 +33,3 @@ def test_it_sees_the_nearest_opponent_and_nobody_behind_where_there_is_none(tmp_
     # Neither is on the way of a shot, so that the lane is free either way.
     assert alone != both
     assert told((-5.0, 0.0)) == alone
-
-
-def test_without_a_policy_for_it_it_does_nothing(tmp_path: Path) -> None:
-    assert Alone(Duel()).tick(frame(robot())) is Status.FAILURE
-    other = write_model(tmp_path, network(23, 4), team_card("Goalkeeper", 0, 1))
-    with pytest.raises(ModelError, match="is a model for Goalkeeper, not for Duel"):
-        Duel(policy=str(other))

@@ -18,7 +18,7 @@ from robobt.tree import Status
 from robobt.world import DIVISION_B, BallState, Frame, GameState, RobotCommand, RobotLimits, RobotState
 from robobt.world.game import Team, TeamStatus
 from robobt.world.scoring import SCORE_ON_GOALKEEPER, score_on_goalkeeper_of
-from tests.models.made_models import Faulty, Passing, go_to_ball_card, score_card, write_model
+from tests.models.made_models import Passing, score_card, write_model
 from tests.skills.fixed_world import Alone
 from tests.skills.side_by_side import the_leaf_does_what_it_does_in_training
 
@@ -36,13 +36,6 @@ def test_it_drives_and_kicks_with_the_dribbler_on(tmp_path: Path) -> None:
     assert alone.command.dribbler
     alone.tick(frame(me, ball=(2.1, 0.0), opponents=(right,), time=0.1))
     assert alone.command.kick_speed == 0.0
-
-
-def test_a_wrong_answer_fails_it_and_stops_the_robot(tmp_path: Path) -> None:
-    model = write_model(tmp_path, Faulty("nan", far=1.0, entry=3, outputs=4), score_card(), probed=False)
-    alone = Alone(Score(policy=str(model)))
-    assert alone.tick(frame(robot(), ball=(3.0, 0.0))) is Status.FAILURE
-    assert alone.command == RobotCommand()
 
 
 @pytest.mark.parametrize(("held", "status"), [(1.4, Status.FAILURE), (1.6, Status.RUNNING)])
@@ -99,17 +92,6 @@ def test_the_weakest_dribbler_is_a_share(weakest: float) -> None:
         Score(weakest=weakest)
 
 
-def test_it_decides_as_often_as_in_training(tmp_path: Path) -> None:
-    model = write_model(tmp_path, Passing(), score_card(period=0.06))
-    alone, left = Alone(Score(policy=str(model))), robot(4.3, 0.4, number=3)
-    driven = []
-    for tick in range(6):
-        now = frame(robot(), (0.1 + 0.01 * tick, 0.0), opponents=(left,), time=0.03 * tick, period=0.03)
-        alone.tick(now)
-        driven.append(alone.command.vx / 3.0)
-    assert driven == pytest.approx([0.1, 0.1, 0.12, 0.12, 0.14, 0.14], abs=1e-4)
-
-
 def test_one_trained_against_defenders_plays_as_in_training(tmp_path: Path) -> None:
     the_leaf_does_what_it_does_in_training("ScoreOnGoalkeeperAndDefenders", "Score", tmp_path)
 
@@ -147,16 +129,6 @@ def test_one_that_cannot_be_loaded_fails_it(monkeypatch: pytest.MonkeyPatch) -> 
     assert alone.tick(frame(robot(), ball=(3.0, 0.0))) is Status.FAILURE
     assert "needs torch" in alone.tree.feedback_message
     assert alone.command == RobotCommand()
-
-
-def test_without_a_policy_it_fails() -> None:
-    assert Alone(Score()).tick(frame(robot(), ball=(3.0, 0.0))) is Status.FAILURE
-
-
-def test_only_a_policy_for_it_will_do(tmp_path: Path) -> None:
-    other = write_model(tmp_path, Faulty("far"), go_to_ball_card())
-    with pytest.raises(ModelError, match="is a model for GoToBall, not for Score"):
-        Score(policy=str(other))
 
 
 def seen(*opponents: RobotState, keeper: int | None = None) -> dict[str, float]:
