@@ -11,9 +11,6 @@ from robobt.world.game import Team
 
 Order = Literal["halt", "stop", "continue", "force start", "kick-off", "free kick", "penalty"]
 
-FOR_A_TEAM = ("kick-off", "free kick", "penalty")
-"""Orders that need a team."""
-
 
 def give(controller: Controller, field: FieldGeometry, order: Order, team: Team | None = None) -> None:
     """Give an order; the controller handles its consequences.

@@ -61,18 +61,6 @@ class Requests:
         state.records[team].keeper = number
         return True
 
-    def card(self, team: Team) -> None:
-        """Show a team a card, as a human referee does for unsporting behaviour."""
-        state = self._state
-        state.note(EventKind.UNSPORTING_BEHAVIOR_MINOR, team)
-        for event in state.discipline.card(team, state.time):
-            state.record(event)
-
-    def red_card(self, team: Team) -> None:
-        """Show a team a red card, as a human referee does for unsporting behaviour."""
-        self._state.note(EventKind.UNSPORTING_BEHAVIOR_MAJOR, team)
-        self._state.records[team].red += 1
-
     def serve(self) -> bool:
         """Carry out the requests, in a STOP; return whether that changed the command."""
         state = self._state

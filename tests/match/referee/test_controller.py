@@ -410,15 +410,6 @@ def test_a_third_card_while_two_run_is_red_to_the_end() -> None:
     assert (status.yellow_cards, status.red_cards, status.max_robots) == (0, 1, 5)
 
 
-def test_cards_by_a_human_referee() -> None:
-    match = Match()
-    match.controller.requests.card(BLUE)
-    match.controller.requests.red_card(YELLOW)
-    match.tick()
-    assert (match.game.status(BLUE).max_robots, match.game.status(YELLOW).max_robots) == (5, 5)
-    assert match.kinds == [K.UNSPORTING_BEHAVIOR_MINOR, K.UNSPORTING_BEHAVIOR_MAJOR]
-
-
 def test_the_other_team_may_want_play_to_go_on_for_its_advantage() -> None:
     match = Match()
     match.controller.requests.advantage(YELLOW, True)
