@@ -178,11 +178,6 @@ def read_rows(path: Path) -> list[Row]:
 def repeats(row: Row, world_factory: WorldFactory, workers: int = 1) -> bool:
     """Play a row again; return whether the hash over all true states is equal.
 
-    Args:
-        row: the row.
-        world_factory: makes the world.
-        workers: number of processes.
-
     Raises:
         ScenarioError: a play of the row, or a setting, is not there.
         RunError: a run raised.

@@ -48,9 +48,6 @@ class Checkpoint:
     Put back are lists, dictionaries, sets, deques, arrays, attributes, closures and random generators.
     Generators, files, threads and objects of compiled modules are left alone, and so are frames, settings and
     classes, which nothing changes.
-
-    Args:
-        roots: the objects.
     """
 
     def __init__(self, *roots: object) -> None:

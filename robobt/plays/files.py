@@ -179,11 +179,7 @@ def rename_play(name: str, rename: Callable[[str], str]) -> str:
 
 
 def tree_yaml(root: Behaviour, name: str) -> str:
-    """Return a tree as the YAML of a play.
-
-    Args:
-        root: of the tree.
-        name: of the play.
+    """Return the tree with this ``root`` as the YAML of a play with this ``name``.
 
     Raises:
         ValueError: a node is not registered, or has a parameter that is not plain data.
@@ -192,11 +188,7 @@ def tree_yaml(root: Behaviour, name: str) -> str:
 
 
 def tree_xml(root: Behaviour, name: str) -> str:
-    """Return a tree as the XML of BehaviorTree.CPP 4, with all skills in Groot2's palette.
-
-    Args:
-        root: of the tree.
-        name: of the play.
+    """Return the tree with this ``root`` and ``name`` as BehaviorTree.CPP 4's XML, all skills in its palette.
 
     Raises:
         ValueError: as for :func:`tree_yaml`, or XML cannot express the tree.

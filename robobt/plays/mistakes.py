@@ -53,11 +53,6 @@ def mistake_in_play(error: BaseException) -> str:
 def check_returned(name: str, builder: Callable[..., object], returned: object) -> None:
     """Check that a play returned a tree: of nodes, each only once and in no earlier tree.
 
-    Args:
-        name: the play's name.
-        builder: the play.
-        returned: the object that it returned.
-
     Raises:
         PlayError: it is no tree; the message names the play, its file and its line.
     """

@@ -162,11 +162,7 @@ def private_files(name: str) -> PrivateFiles | None:
 
 
 def sender(names: Sequence[str] = ()) -> Callable[[], None]:
-    """Return an object that gives another process the same Python files as they are here.
-
-    Args:
-        names: names of plays.
-    """
+    """Return an object that gives another process the Python files of plays' ``names`` as they are here."""
     sent: dict[tuple[str, ...], Sources] = {}
     for name in names:
         owner = private_files(name)

@@ -63,13 +63,7 @@ def arena_arrays(
 ) -> ArenaArrays:
     """Return the arrays of arenas with robots of such ``limits``; None takes the settings' own.
 
-    Args:
-        settings: of the simulator.
-        limits: of an arena's robots.
-        history: how many sub-steps to keep.
-        bodies: of the arenas.
-        contacts: of the solver.
-        calls: of pymunk.
+    ``history`` is how many sub-steps to keep; ``calls`` are pymunk's.
     """
     n, robots = len(bodies), len(limits)
     states, kept = np.zeros((n, size(ARENA))), np.zeros((n, robots, size(KEPT)))

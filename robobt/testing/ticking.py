@@ -43,11 +43,7 @@ class Statuses(list[Status]):
         self.said: list[str] = []
 
     def differences(self, expected: Sequence[object]) -> list[str]:
-        """Return what pytest shows where these are not the statuses that a test expects.
-
-        Args:
-            expected: those statuses.
-        """
+        """Return what pytest shows where these are not the statuses that a test expects."""
         lines = [f"{_names(self)} == {_names(expected)}"]
         for tick, (status, said) in enumerate(zip(self, self.said, strict=True)):
             wanted = expected[tick] if tick < len(expected) else None

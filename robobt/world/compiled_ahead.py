@@ -19,11 +19,7 @@ from robobt.world.compiler import CALLED_BY_PYTHON, CalledByPython
 
 
 def compile_line(line: str) -> None:
-    """Compile one function for given types and keep it, or load what is kept.
-
-    Args:
-        line: the function and the types.
-    """
+    """Compile one function for given types and keep it, or load what is kept."""
     name, _, given = line.partition(" ")
     module, _, function = name.partition(":")
     made: CalledByPython = getattr(import_module(module), function)
@@ -49,11 +45,7 @@ def compiled_lines() -> list[str]:
 
 
 def is_kept(function: Callable[..., object]) -> bool:
-    """Return whether some version of a compiled function is kept, or nothing can be kept.
-
-    Args:
-        function: the function.
-    """
+    """Return whether some version of a compiled ``function`` is kept, or nothing can be kept."""
     index = getattr(getattr(function, "_cache", None), "_cache_file", None)
     return index is None or Path(index._index_path).exists()
 

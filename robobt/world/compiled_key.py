@@ -66,12 +66,7 @@ class _Index(IndexDataCacheFile):
         return kept
 
     def save(self, key: object, data: object) -> None:
-        """Keep a version, and remove those that were kept first if there are too many.
-
-        Args:
-            key: of the version.
-            data: its code.
-        """
+        """Keep a version, and remove those that were kept first if there are too many."""
         kept = self._load_index()
         name = self._data_name(uuid4().int >> 64)  # type: ignore[no-untyped-call]
         # The code before the index that names it.
@@ -101,10 +96,6 @@ class DeepCache(FunctionCache):
         """Return the code kept for these types; None if this process has to compile it.
 
         If another process is compiling, this one waits for it.
-
-        Args:
-            sig: the types.
-            target_context: numba's, of the machine.
         """
         found = super().load_overload(sig, target_context)  # type: ignore[no-untyped-call]
         if found is not None:
@@ -119,12 +110,7 @@ class DeepCache(FunctionCache):
         return found
 
     def save_overload(self, sig: object, data: object) -> None:
-        """Keep compiled code, and let other processes go on.
-
-        Args:
-            sig: the types that it is for.
-            data: the code.
-        """
+        """Keep compiled code, and let other processes go on."""
         try:
             super().save_overload(sig, data)  # type: ignore[no-untyped-call]
         finally:

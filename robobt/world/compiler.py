@@ -72,22 +72,13 @@ class CalledByPython(CPUDispatcher):
 
 
 def compile_function(function: Function, **options: Any) -> Function:
-    """Return a function that is compiled at first use, and kept if a folder is writable.
-
-    Args:
-        function: the function.
-        options: numba's.
-    """
+    """Return a function that is compiled at first use, by numba's ``options``, and kept if possible."""
     made: Any = CalledByPython(function, None, {"nopython": True, "no_cfunc_wrapper": True, **options})
     return cast(Function, made)
 
 
 def inlined_function(function: Function) -> Function:
-    """Return a function as it is, which becomes part of each compiled function that calls it.
-
-    Args:
-        function: the function.
-    """
+    """Return a function as it is, which becomes part of each compiled function that calls it."""
     # By two attributes numba knows that the code of a function is to go into its callers. That the function
     # is registered gives its name a type there.
     made: Any = register_jitable(function)

@@ -137,22 +137,15 @@ class DelayWatch:
                 self._excess = None
 
     def of(self, robot: RobotId) -> MeasuredDelay | None:
-        """Return a robot's delay; None while too little was seen.
-
-        Args:
-            robot: which.
-        """
+        """Return the delay of a ``robot``; None while too little was seen."""
         watch = self._robots.get(robot)
         return None if watch is None else watch.delay
 
     def expected(self, robot: RobotId) -> float:
-        """Return the delay by which to predict a robot [s].
+        """Return the delay by which to predict a ``robot`` [s].
 
         It is the measured one. For a robot that was not seen enough it is the delay that the nominal one and
         its limits tell, plus the median of what the measured robots have beyond theirs.
-
-        Args:
-            robot: which.
         """
         known = self.of(robot)
         if known is not None:
@@ -176,11 +169,7 @@ class DelayWatch:
         }
 
     def expects_as(self, other: DelayWatch) -> bool:
-        """Return whether another watch was made for the same robots, so that both may share their figures.
-
-        Args:
-            other: the other watch.
-        """
+        """Return whether ``other`` was made for the same robots, so that both may share their figures."""
         return (self._limits, self._own, self._nominal) == (other._limits, other._own, other._nominal)
 
     def interrupt(self) -> None:

@@ -242,10 +242,6 @@ def shared_view(frame: Frame, team: Team) -> Frame:
     """Return ``frame.seen_by(team)``, where what is found for all robots is found once for both teams.
 
     Neither frame may change from then on, unless what the view has ``made`` is cleared.
-
-    Args:
-        frame: the frame.
-        team: the team that looks.
     """
     view = frame.seen_by(team)
     if view is not frame:

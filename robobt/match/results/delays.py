@@ -28,11 +28,7 @@ class DelayResult:
 
 
 def delay_results(measured: Mapping[RobotId, MeasuredDelay | None]) -> dict[str, DelayResult | None]:
-    """Return the delays by the robots' names ("blue 0"), None for a robot that was not seen enough.
-
-    Args:
-        measured: by robot.
-    """
+    """Return the delays by the robots' names ("blue 0"), None for a robot that was not seen enough."""
     return {
         str(robot): None if it is None else DelayResult(it.seconds, it.low, it.high)
         for robot, it in sorted(measured.items())
