@@ -10,8 +10,8 @@ from typing import ClassVar
 import numpy as np
 
 from robobt.challenges.challenge import CHALLENGES, ChallengeAttempt, Figures, FixedChallenge
-from robobt.challenges.placing import PlacedBalls
 from robobt.match.referee.events import Decision
+from robobt.match.referee.rules.placement import PlacedBalls
 from robobt.match.scenario.scenario import Scenario, scenario_from
 from robobt.world.field import FieldGeometry
 from robobt.world.game import GameState, RefereeCommand, Restart, Team

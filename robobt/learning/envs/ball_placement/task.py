@@ -10,7 +10,6 @@ import numpy as np
 from pydantic import Field, model_validator
 
 from robobt.challenges.ball_placement import PLACEMENT_TIME, PLACEMENTS
-from robobt.challenges.placing import CLEAR_DISTANCE, PlacedBalls
 from robobt.config.validation import Settings
 from robobt.learning.envs.arena_task import ArenaTask
 from robobt.learning.envs.scripted import TAKEN_DISTANCE
@@ -19,6 +18,7 @@ from robobt.learning.envs.starts import START_COLUMNS, places_of, start_parts
 from robobt.learning.envs.task import BoolArray, FloatArray, IntArray
 from robobt.learning.envs.task_parts import Policy
 from robobt.learning.envs.tick import Tick
+from robobt.match.referee.rules.placement import CLEAR_DISTANCE, PlacedBalls
 from robobt.models.actions import ActionScaling
 from robobt.world.field import DIVISION_B
 from robobt.world.observation import Seen, entries, own_observation

@@ -3,28 +3,31 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from math import hypot, inf
+from math import inf
+
+import numpy as np
+from numpy.typing import NDArray
 
 from robobt.match.referee.events import EventKind, RefereeEvent
 from robobt.match.referee.rules.base import Rule, event, team_event
 from robobt.match.referee.scene import PlayPhase, RefereeScene
-from robobt.world.geometry import Point, distance, segment_distance
+from robobt.world.geometry import FloatArray, Point, distance, segment_distance
 from robobt.world.rules import PLACED_DISTANCE, STOP_DISTANCE
 from robobt.world.state import ROBOT_RADIUS, RobotId
 
-SOONEST = 2.0
+_SOONEST = 2.0
 """Least duration of a placement [s]. Source: SSL rules."""
 
-OWN_GAP = 0.05
-"""Least distance of robots from the ball when their free kick follows [m]. Source: SSL rules."""
+CLEAR_DISTANCE = ROBOT_RADIUS + 0.05
+"""Least distance of robots' centres from the ball when their free kick follows [m]. Source: SSL rules."""
 
-AVERAGE_SMOOTHING, STILL_DISTANCE = 0.97, 0.005
+_AVERAGE_SMOOTHING, _STILL_DISTANCE = 0.97, 0.005
 """Weight of the past in the ball's moving average, and largest distance of a resting ball from it [m].
 
 Source: AutoReferee.
 """
 
-LEARNT_AT = 0.01
+_LEARNT_AT = 0.01
 """Frame length of the moving average [s]."""
 
 _PLACEMENT_WAY_DISTANCE = STOP_DISTANCE + ROBOT_RADIUS
@@ -32,6 +35,51 @@ _PLACEMENT_WAY_DISTANCE = STOP_DISTANCE + ROBOT_RADIUS
 
 _INTERFERING = 2.0
 """Time for opponents to leave the ball's way [s]. Source: SSL rules."""
+
+
+class PlacedBalls:
+    """Sees, on many fields at a time, whether balls rest at their spots with all robots clear of them.
+
+    Source: RoboCup SSL rules, chapter "Ball Placement", and AutoReferee.
+
+    Args:
+        n: number of fields.
+        period: time between two frames [s].
+    """
+
+    def __init__(self, n: int, period: float) -> None:
+        self._share = _AVERAGE_SMOOTHING ** (period / _LEARNT_AT)
+        self._mean = np.zeros((n, 2))
+
+    def restart(self, which: NDArray[np.int64], balls: FloatArray) -> None:
+        """Begin a placement on the fields ``which`` (m,), with the ``balls`` at (m, 2) [m]."""
+        self._mean[which] = balls
+
+    def see(
+        self,
+        robots: FloatArray,
+        balls: FloatArray,
+        spots: FloatArray,
+        elapsed: FloatArray,
+        clear: float = CLEAR_DISTANCE,
+    ) -> NDArray[np.bool_]:
+        """Take in the next frame of each field; return where the ball is placed, (n,).
+
+        Args:
+            robots: places of all robots, (n, R, 2) [m].
+            balls: places of the balls, (n, 2) [m].
+            spots: where they are to be placed, (n, 2) [m].
+            elapsed: time since the placements began, (n,) [s].
+            clear: least distance of robots' centres from the ball [m].
+        """
+        self._mean = self._share * self._mean + (1.0 - self._share) * balls
+        placed: NDArray[np.bool_] = (
+            (elapsed >= _SOONEST)
+            & (np.hypot(*(balls - spots).T) <= PLACED_DISTANCE)
+            & (np.hypot(*(balls - self._mean).T) <= _STILL_DISTANCE)
+            & (np.linalg.norm(robots - balls[:, None], axis=2) >= clear).all(axis=1)
+        )
+        return placed
 
 
 class PlacementSucceeded(Rule):
@@ -43,41 +91,34 @@ class PlacementSucceeded(Rule):
     phases = frozenset({PlayPhase.PLACEMENT})
 
     def __init__(self) -> None:
-        self._mean: Point = (0.0, 0.0)
+        self._balls = PlacedBalls(1, 0.0)
         self._start: Point = (0.0, 0.0)
         self._told = False
 
     def enter(self, scene: RefereeScene) -> None:
         """Begin a placement."""
-        self._mean = self._start = scene.frame.ball.position
-        self._told = False
+        self._start, self._told = scene.frame.ball.position, False
+        self._balls = PlacedBalls(1, scene.frame.period)
+        self._balls.restart(np.array([0]), np.array([self._start]))
 
     def check(self, scene: RefereeScene) -> Iterable[RefereeEvent]:
         """Report success once."""
-        ball = scene.frame.ball.position
-        share = AVERAGE_SMOOTHING ** (scene.frame.period / LEARNT_AT)
-        mean = self._mean = (
-            share * self._mean[0] + (1.0 - share) * ball[0],
-            share * self._mean[1] + (1.0 - share) * ball[1],
-        )
-        spot, team = scene.game.placement, scene.game.restart_team
-        if self._told or spot is None or team is None or scene.elapsed < SOONEST:
+        frame, spot, team = scene.frame, scene.game.placement, scene.game.restart_team
+        at, clear = frame.ball.position, ROBOT_RADIUS + STOP_DISTANCE
+        if scene.game.next_team is team:
+            clear = CLEAR_DISTANCE
+        robots = np.array([robot.position for robot in (*frame.own, *frame.opponents)]).reshape(1, -1, 2)
+        elapsed = np.array([scene.elapsed])
+        (placed,) = self._balls.see(robots, np.array([at]), np.array([spot or at]), elapsed, clear)
+        if not placed or self._told or spot is None or team is None:
             return
-        precision = distance(ball, spot)
-        if precision > PLACED_DISTANCE or distance(ball, mean) > STILL_DISTANCE:
-            return
-        own = scene.game.next_team is team
-        reach = ROBOT_RADIUS + (OWN_GAP if own else STOP_DISTANCE)
-        for robot in (*scene.frame.own, *scene.frame.opponents):
-            if hypot(robot.x - ball[0], robot.y - ball[1]) < reach:
-                return
         self._told = True
         yield team_event(
             scene,
             EventKind.PLACEMENT_SUCCEEDED,
             team,
             time_taken=scene.elapsed,
-            precision=precision,
+            precision=distance(at, spot),
             distance=distance(self._start, spot),
         )
 
