@@ -107,7 +107,7 @@ def _is_model(name: str) -> bool:
     return file.suffix in SUFFIXES.values() and file.is_file()
 
 
-def find_play(name: str, folder: str | Path = ".") -> Play:
+def find_play(name: str) -> Play:
     """Return a play by its name, or a tree file's play if the name ends in .yaml, .yml, .xml or .btproj.
 
     A tree file is read again only when it has changed. A play of a Python file, ``my_team.py:striker``, has
@@ -115,7 +115,6 @@ def find_play(name: str, folder: str | Path = ".") -> Play:
 
     Args:
         name: name of a play, or of a file.
-        folder: folder to which paths of tree files are relative.
 
     Raises:
         KeyError: no play has that name.
@@ -126,7 +125,7 @@ def find_play(name: str, folder: str | Path = ".") -> Play:
     with within(owner):
         if not is_play_file(inner):
             return PLAYS[inner]
-        path = Path(folder) / inner
+        path = Path(inner)
         try:
             stats = [file.stat() for file in tree_files(path)]
         except (OSError, ValueError):

@@ -41,9 +41,9 @@ class Stages:
         attempts: kicks of the shoot-out so far.
     """
 
-    def __init__(self, settings: RefereeSettings, stage: Stage = Stage.NORMAL_FIRST_HALF_PRE) -> None:
+    def __init__(self, settings: RefereeSettings) -> None:
         self._settings = settings
-        self.stage = stage
+        self.stage = Stage.NORMAL_FIRST_HALF_PRE
         self.played = 0.0
         self.turn = settings.opening_team
         self.attempts = 0

@@ -437,15 +437,15 @@ def test_a_play_is_found_by_its_name_or_its_file(tmp_path: Path) -> None:
     path = tmp_path / "wall.yaml"
     path.write_text("play: wall\ntree: Wall\n")
     assert find_play("goalkeeper") is PLAYS["goalkeeper"]
-    assert same(find_play("wall.yaml", tmp_path)(), Wall())
-    assert find_play("wall.yaml", tmp_path) is find_play(str(path))
+    assert same(find_play(str(path))(), Wall())
+    assert find_play(str(path)) is find_play(str(path))
     path.write_text("play: wall\ntree: {Wall: {size: 2}}\n")
     assert same(find_play(str(path))(), Wall(size=2))
     with pytest.raises(KeyError, match="no play is called 'wall'"):
-        find_play("wall", tmp_path)
+        find_play("wall")
     for missing in ("no.yaml", "no\x00.xml"):
         with pytest.raises(TreeFileError, match="cannot be read"):
-            find_play(missing, tmp_path)
+            find_play(str(tmp_path / missing))
 
 
 DOCUMENT = Path(__file__).parents[3] / "docs" / "tree_files.md"

@@ -37,14 +37,13 @@ class Rule(ABC):
 class RepeatLimit:
     """Lets a report through once, and again :data:`AGAIN` seconds later."""
 
-    def __init__(self, pause: float = AGAIN) -> None:
-        self._pause = pause
+    def __init__(self) -> None:
         self._last: dict[object, float] = {}
 
     def ready(self, key: object, time: float) -> bool:
         """Return whether ``key`` may be reported now, and note that it was."""
         last = self._last.get(key)
-        if last is not None and time - last < self._pause:
+        if last is not None and time - last < AGAIN:
             return False
         self._last[key] = time
         return True
