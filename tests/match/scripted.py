@@ -47,10 +47,6 @@ class Scripted(Skill):
         if self.breaks in _SPOILT:
             self.store.command = _SPOILT[self.breaks]
             return self.run()
-        if self.breaks == "frame":
-            frame = self.frame
-            frame.ball, frame.own, frame.opponents, frame.game = None, (), (), None  # type: ignore[assignment]
-            return self.run()
         me, ball = self.me, self.ball
         gap = hypot(ball.x - me.x, ball.y - me.y)
         if me.ball_contact:

@@ -60,7 +60,7 @@ from robobt.tree.nodes import (
 )
 from robobt.world import Team
 from tests.skills.fixed_world import Alone
-from tests.skills.refereed import HALT, OPEN, STOP, free_kick, kickoff, penalty
+from tests.skills.refereed import STOP, free_kick
 from tests.tree.random_trees import Log, Told
 from tests.tree.scripted import INVALID, F, Notes, R, S, Scripted, Watched, scripted
 
@@ -369,12 +369,8 @@ def test_32_a_switch_fails_in_a_case_without_a_child() -> None:
 @pytest.mark.parametrize(
     ("game", "case"),
     [
-        (OPEN, "play"),
-        (HALT, "halt"),
         (STOP, "stop"),
-        (kickoff(Team.BLUE, True), "our_kickoff"),
         (free_kick(Team.YELLOW, (1.0, 1.0)), "their_free_kick"),
-        (penalty(Team.BLUE, (1.0, 1.0)), "our_penalty"),
     ],
 )
 def test_33_the_referees_word_is_the_case(game: Any, case: str) -> None:

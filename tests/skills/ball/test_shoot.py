@@ -31,11 +31,6 @@ def model(tmp_path_factory: pytest.TempPathFactory) -> str:
     return str(write_model(tmp_path_factory.mktemp("models"), Aimed(), shoot_card()))
 
 
-def test_an_unknown_policy_is_refused_by_name() -> None:
-    with pytest.raises(ValueError, match=r"'clever'.*ddpg, geometric"):
-        Shoot(policy="clever")
-
-
 def test_a_model_of_another_skill_is_refused(tmp_path: Path) -> None:
     with pytest.raises(ModelError, match="for GoToBall, not for Shoot"):
         Shoot(policy=str(write_model(tmp_path)))

@@ -119,36 +119,6 @@ def test_the_files_are_all_looked_at() -> None:
     assert sorted(path.stem for path in DATA.glob("*.xml")) == sorted(TUTORIALS)
 
 
-def test_t01_a_sequence_of_named_leaves() -> None:
-    root = build_tree(load("t01_first_tree"), VOCABULARY)
-    assert type(root) is Sequence
-    assert [node.name for node in preorder(root)] == [
-        "fetch it",
-        "enough power",
-        "hand open",
-        "to the thing",
-        "hand closed",
-    ]
-    house = House()
-    assert run(root, house) == ["S"]
-    assert house.said == ["battery", "open", "approach", "close"]
-
-
-def test_t02_a_value_goes_through_the_store_from_one_leaf_to_the_next() -> None:
-    house = House()
-    run(build_tree(load("t02_ports"), VOCABULARY), house)
-    assert house.said == ["good morning", "the long form does as well", "forty-two"]
-
-
-def test_t04_a_sequence_asks_its_guard_once_and_a_reactive_one_at_every_tick() -> None:
-    once, always = House(), House()
-    assert run(build_tree(load("t04_sequence"), VOCABULARY), once) == ["R", "S"]
-    assert run(build_tree(load("t04_reactive_sequence"), VOCABULARY), always) == ["R", "S"]
-    assert once.said.count("battery") == 1
-    assert always.said.count("battery") == 2
-    assert always.said.count("off we go") == 1
-
-
 @pytest.mark.parametrize(("locked", "end"), [(0, "door opened"), (3, "picking"), (9, "smashed")])
 def test_t05_a_closed_door_is_opened_picked_or_smashed(locked: int, end: str) -> None:
     house = House(locked=locked)

@@ -29,17 +29,6 @@ def test_a_place_is_kept_when_a_child_is_replaced() -> None:
     assert tree.ticked == "other third"
 
 
-def test_a_place_outlives_a_change_of_plans() -> None:
-    """A restart interrupts a player's steps; afterwards it goes on with the step it was at."""
-    steps = SequenceWithMemory("steps", scripted(fetch="S", carry="RS", place="S"))
-    tree = Watched(Selector("root", memory=False, children=[Scripted("stop", "FSSF"), steps]))
-    done = []
-    for _ in range(5):
-        tree.tick()
-        done.append(tree.ticked)
-    assert done == ["stop fetch carry", "stop", "stop", "stop carry place", "stop fetch carry place"]
-
-
 def test_only_the_branch_that_says_so_is_committed() -> None:
     high, low = Scripted("high", "FR"), Scripted("low", "R")
     inner = Sequence("inner", memory=False, children=[CommitFor("c", low, seconds=1.0)])

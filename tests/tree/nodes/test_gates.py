@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from robobt.tree import Selector, Sequence, Status
+from robobt.tree import Sequence, Status
 from robobt.tree.nodes import Cooldown, Delay, Gate, HoldSuccess, TickDivider, Timeout, Wait
 from tests.tree.scripted import Scripted, Watched
 
@@ -95,35 +95,6 @@ def test_a_divider_survives_the_resets_of_a_reactive_sequence() -> None:
         tree.tick()
         ticked += "rate" in tree.ticked
     assert ticked == 4
-
-
-def test_a_flickering_guard_does_not_stop_what_it_guards_while_held() -> None:
-    def shots(guard: Any) -> Watched:
-        return Watched(Sequence("shoot", memory=False, children=[guard, Scripted("kick", "R")]))
-
-    flickering = "SFSFSFSF"
-    bare, held = (
-        shots(Scripted("open", flickering)),
-        shots(HoldSuccess("h", Scripted("open", "S"), seconds=1)),
-    )
-    times = [0.1 * tick for tick in range(8)]
-    assert bare.at(times) == "RFRFRFRF"
-    assert held.at(times) == "R" * 8
-
-
-def test_after_a_cooldown_the_next_branch_has_its_turn() -> None:
-    tree = Watched(
-        Selector(
-            "root",
-            memory=False,
-            children=[Cooldown("rest", Scripted("pass", "F"), seconds=1.0), Scripted("hold", "R")],
-        )
-    )
-    turns = []
-    for time in (0.0, 0.5, 1.0):
-        tree.tick(time)
-        turns.append(tree.ticked)
-    assert turns == ["pass hold", "hold", "pass hold"]
 
 
 def test_a_gate_that_runs_keeps_a_running_child_and_drops_a_finished_one() -> None:

@@ -254,25 +254,6 @@ def test_a_rater_is_made_by_name_with_its_settings() -> None:
     assert make_rater({"name": "segment_clearance"}) == make_rater("segment_clearance") == SegmentClearance()
 
 
-def test_a_rater_already_made_is_used_as_it_is() -> None:
-    rater = SegmentClearance(tolerance=0.3)
-    assert make_rater(rater) is rater
-
-
-def test_an_unknown_rater_is_named_with_those_there_are() -> None:
-    with pytest.raises(ValueError, match="open_angle"):
-        make_rater("crystal_ball")
-    with pytest.raises(ValueError, match=r"name: .*'open_angel'; .*did you mean open_angle\?"):
-        make_rater({"name": "open_angel", "full_angle": 0.2})
-
-
-def test_a_setting_a_rater_does_not_have_is_refused() -> None:
-    with pytest.raises(ValueError, match="tolerance"):
-        make_rater({"name": "open_angle", "tolerance": 0.2})
-    with pytest.raises(ValueError, match="tolerance"):
-        make_rater({"name": "segment_clearance", "tolerance": -1.0})
-
-
 def test_a_rater_of_ones_own_needs_only_rate_all() -> None:
     class Centre(ShotRater):
         def rate_all(self, frame: Frame, origin: Point, me: RobotState, *, delay: float = 0.0) -> list[Shot]:
@@ -281,8 +262,3 @@ def test_a_rater_of_ones_own_needs_only_rate_all() -> None:
     field = FieldGeometry(length=6, width=4, goal_width=0.7, defense_width=1.5, defense_depth=0.7)
     me = robot()
     assert Centre().rate(frame(me, field=field), (0, 0), me) == Shot((3.0, 0.0), 0.1, 0.5)
-
-
-def test_a_setting_that_a_rater_lacks_is_named() -> None:
-    with pytest.raises(ValueError, match=r"clearence: there is no such field; .*did you mean clearance\?"):
-        make_rater({"name": "open_angle", "clearence": 0.3})
