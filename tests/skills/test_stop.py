@@ -15,6 +15,12 @@ def test_it_asks_for_no_velocity_until_the_robot_stands() -> None:
     assert alone.tick(frame(robot())) is Status.SUCCESS
 
 
+def test_the_dribbler_may_go_on_turning() -> None:
+    alone = Alone(Stop(dribbler=True))
+    alone.tick(frame(robot()))
+    assert alone.command == RobotCommand(dribbler=True)
+
+
 def test_a_driving_robot_comes_to_rest() -> None:
     stop = Stop()
     trial = alone(stop, (0.0, 2.0, 0.0))

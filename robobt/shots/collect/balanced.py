@@ -35,6 +35,9 @@ WIDEST = 1.3
 OFFSET = 0.7
 """Largest distance at the start of a goalkeeper from the line of a shot taken at once [m]."""
 
+ROBOBULLS_GOALKEEPER = "paper/robobulls.py:robobulls_goalkeeper"
+"""The play of RoboBulls' goalkeeper; a clone of the repository has it."""
+
 _AREA_EDGE_GAP = 0.15
 _LEAST_ROBOT_GAP = 0.35
 _LARGEST_TURN = 0.8
@@ -86,7 +89,7 @@ def balanced_attempt(settings: CollectionSettings, trial: int) -> Attempt:
     faced = "half_speed" if speed < 1.0 else "full_speed"
     if settings.style == "robobulls":
         faced = settings.style
-        goalkeeper = goalkeeper.model_copy(update={"params": {**goalkeeper.params, "style": settings.style}})
+        goalkeeper = goalkeeper.model_copy(update={"play": ROBOBULLS_GOALKEEPER})
     opponents = [moved(goalkeeper, keeper, direction(keeper, start), flip=True, speed=speed)]
     for setup in others:
         place = _blocker(field, ball, target, taken, rng)

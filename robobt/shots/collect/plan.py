@@ -47,7 +47,7 @@ class CollectionSettings(Settings):
         None, description="fitted goalkeepers to draw one from for each shot; our own without"
     )
     style: Literal["default", "robobulls"] = Field(
-        "default", description="style of our own goalkeeper: see the play goalkeeper"
+        "default", description="whose pilot our goalkeeper has: ours, or RoboBulls' (in a clone)"
     )
 
 

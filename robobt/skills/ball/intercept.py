@@ -77,6 +77,7 @@ def meet(
     limits: RobotLimits,
     rolling: float,
     *,
+    goalkeeper: bool = False,
     slack: float = 0.0,
     sketch: Sketch | None = None,
 ) -> RobotCommand:
@@ -87,6 +88,7 @@ def meet(
         me: the robot.
         limits: how to drive.
         rolling: speed at which the ball begins to roll [m/s].
+        goalkeeper: may enter the own defence area.
         slack: heading error allowed while the ball is still far [rad].
         sketch: takes the planned way.
     """
@@ -104,7 +106,7 @@ def meet(
     place = (x + _MEETING_DISTANCE * ux, y + _MEETING_DISTANCE * uy)
     if gap > _FACING_RANGE:
         heading = roughly(me.heading, heading, slack)
-    order = travel(frame, me, place, heading, limits, sketch=sketch)
+    order = travel(frame, me, place, heading, limits, goalkeeper=goalkeeper, sketch=sketch)
     order.dribbler = gap < 1.0
     return order
 
@@ -119,9 +121,11 @@ class Intercept(DrivingSkill):
         limits: how to drive; None for the robot's own.
         speed_factor: factor on the top speed.
         settle: how long the ball has to stay in the mouth [s].
+        goalkeeper: may enter the own defence area.
     """
 
     settle: float = 0.05
+    goalkeeper: bool = False
     _watch: BallWatch = field(default_factory=BallWatch, init=False)
     _grip: Grip = field(default_factory=Grip, init=False)
 
@@ -129,7 +133,9 @@ class Intercept(DrivingSkill):
         """Drive one tick."""
         frame, me = self.frame, self.me
         rolling = self._watch.rolling_speed(frame)
-        self.store.command = meet(frame, me, self.drive_limits, rolling, sketch=self.draw)
+        self.store.command = meet(
+            frame, me, self.drive_limits, rolling, goalkeeper=self.goalkeeper, sketch=self.draw
+        )
         if self._grip.held_for(frame, me) >= self.settle - 1e-9:
             return self.succeed("it has the ball")
         return self.run("meeting the ball")

@@ -9,12 +9,21 @@ from robobt.world.geometry import distance
 
 @skill
 class IsClosestToBall(Condition):
-    """Succeeds while no other robot of the team is nearer to the ball."""
+    """Succeeds while no other robot of the team is nearer to the ball.
+
+    Args:
+        margin: how much nearer another robot may be while this one still counts as the closest [m].
+        of_all: compare with the opponents too.
+    """
+
+    margin: float = 0.0
+    of_all: bool = False
 
     def on_running(self) -> Status:
         """Compare the distances."""
         frame, ball = self.frame, self.ball.position
-        own = distance(self.me.position, ball)
-        if any(distance(mate.position, ball) < own for mate in frame.teammates(self.me.id)):
+        limit = distance(self.me.position, ball) - self.margin
+        rivals = frame.others(self.me.id) if self.of_all else frame.teammates(self.me.id)
+        if any(distance(rival.position, ball) < limit for rival in rivals):
             return self.fail("another robot is nearer to the ball")
         return self.succeed()

@@ -9,7 +9,13 @@ from robobt.world.rules import owner
 
 @skill
 class TeamHasBall(Condition):
-    """Succeeds while a robot of the own team has the ball."""
+    """Succeeds while a robot of the own team has the ball.
+
+    Args:
+        others_only: whether this robot itself is left out.
+    """
+
+    others_only: bool = False
 
     def on_running(self) -> Status:
         """See who owns the ball."""
@@ -18,4 +24,6 @@ class TeamHasBall(Condition):
             return self.fail("nobody has the ball")
         if holder.team is not self.frame.team:
             return self.fail("the opponents have the ball")
+        if self.others_only and holder.number == self.me.id:
+            return self.fail("it has the ball itself")
         return self.succeed()

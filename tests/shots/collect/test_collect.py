@@ -93,9 +93,13 @@ def test_places_are_even_over_range_angle_and_offset():
 def test_a_shot_says_which_kind_of_goalkeeper_it_met(collected: Path, recorded: list[dict]):
     assert set(read_shots(collected).column("goalkeeper").to_pylist()) == {"half_speed", "full_speed"}
     assert {row["goalkeeper"] for row in recorded} == {"fitted"}
-    attempt = balanced_attempt(CollectionSettings(seed=5, style="robobulls"), 0)
-    assert attempt.labels["goalkeeper"] == "robobulls"
-    assert attempt.scenario.robots.yellow[0].params["style"] == "robobulls"
+
+
+@pytest.mark.integration
+def test_shots_are_collected_against_the_goalkeeper_of_robobulls():
+    settings = CollectionSettings(seed=5, style="robobulls")
+    rows = [play_trial(settings, trial).row for trial in range(4)]
+    assert {row["goalkeeper"] for row in rows if row is not None} == {"robobulls"}
 
 
 def test_several_opponents_are_there_when_asked_for():
