@@ -195,7 +195,7 @@ class LeagueWorld(World, Closing):
             if command.kick_trigger is KickTrigger.NOW:
                 self._commands[robot] = replace(command, kick_speed=0.0)
         self._wait()
-        feed.filter.possession.feedback.update(self._link.feedback())
+        feed.filter.possession.hear(self._link.feedback(), feed.vision_now())
         self._look()
         seen = feed.filter.kicks
         self._kicks = [(kick.robot, min(self._time, max(0.0, kick.time - self._began))) for kick in seen]

@@ -292,6 +292,7 @@ class VisionFilter:
             self._sent,
             self._limits_of,
             holders,
+            {robot for robot, reported in self.possession.feedback.items() if not reported},
             self._ball_model,
         )
 

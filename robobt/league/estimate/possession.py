@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
-from math import cos, hypot, sin
+from math import cos, hypot, inf, sin
 
 from robobt.league.estimate.ball_track import BallMotion
 from robobt.league.estimate.robot_track import RobotMotion
@@ -29,6 +29,9 @@ _PUSH_GAP = 0.05
 
 _FEEDBACK_REACH = 0.05
 """A robot's break-beam sensor is trusted while the ball is seen this close to its mouth [m]."""
+
+_SILENT = 0.07
+"""A sensor may be silent for this long while the ball bounces on the dribbler [s]."""
 
 _HIDDEN_REACH = 0.3
 """A robot whose sensor reports a ball that no camera sees has it, if it may be so far from the mouth [m]."""
@@ -66,6 +69,16 @@ class Possession:
         self.holds: list[CarriedBall] = []
         self.last_touch: RobotId | None = None
         self.feedback: dict[RobotId, bool] = {}
+        self._reported: dict[RobotId, float] = {}
+        self._now = -inf
+
+    def hear(self, reports: Iterable[tuple[RobotId, bool]], time: float) -> None:
+        """Take in what the sensors report at a ``time`` [s]."""
+        self._now = time
+        for robot, contact in reports:
+            self.feedback[robot] = contact
+            if contact:
+                self._reported[robot] = time
 
     def update(self, ball: BallMotion, motions: Mapping[RobotId, RobotMotion]) -> None:
         """Update possession from the estimates at the ball's last detection."""
@@ -113,7 +126,7 @@ class Possession:
             The ball as it has to be: in the mouth of the robot whose sensor reports it, or pushed out of a
             hull; None where neither says more than the prediction.
         """
-        self.holds = [hold for hold in self.holds if self.feedback.get(hold.robot) is not False]
+        self.holds = [hold for hold in self.holds if self._may_hold(hold.robot)]
         if self.holds:
             return None
         depth = self._body.face + BALL_RADIUS
@@ -142,8 +155,14 @@ class Possession:
         ahead, aside = to_robot_frame(ball.x - m.x, ball.y - m.y, m.heading)
         reported = self.feedback.get(robot)
         if reported is not None and self._in_mouth(ahead, aside, _FEEDBACK_REACH):
-            return reported
+            return reported or (self._may_hold(robot) and self._in_mouth(ahead, aside, _HOLD_SLACK))
         return self._in_mouth(ahead, aside, _MOUTH_SLACK)
+
+    def _may_hold(self, robot: RobotId) -> bool:
+        """Return whether the sensor reports the ball, has been silent for a moment only, or never reports."""
+        if self.feedback.get(robot) is not False:
+            return True
+        return self._now - self._reported.get(robot, -inf) < _SILENT
 
     def _in_mouth(self, ahead: float, aside: float, slack: float) -> bool:
         body = self._body

@@ -9,6 +9,7 @@ from robobt.tree import Status
 from robobt.world.command import KickTrigger
 from robobt.world.compiled import compilable
 from robobt.world.records import Ball, Robot
+from robobt.world.rules import keeps_ball
 
 FASTER = 1.0
 """How much faster the ball leaves than it moved along the heading before [m/s]."""
@@ -26,7 +27,7 @@ class LetGo(Skill):
     def on_running(self) -> Status:
         """Kick if the ball is before the kicker."""
         speed, command = push_speed(self.me, self.ball), self.store.command
-        if speed > 0.0:
+        if speed > 0.0 and keeps_ball(self.me, self.ball):
             command.kick_speed, command.kick_trigger = speed, KickTrigger.NOW
         return self.run("letting go")
 

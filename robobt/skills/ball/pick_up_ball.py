@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import field
-from math import atan2, cos, hypot, inf, pi, sin
+from math import atan2, cos, hypot, inf, pi, radians, sin
 
 from robobt.motion.dribbling import settle
 from robobt.motion.pilot import command, turn_rate
@@ -13,17 +13,22 @@ from robobt.world.command import RobotCommand
 from robobt.world.compiled import compilable
 from robobt.world.geometry import wrap_angle
 from robobt.world.records import Ball, Robot
-from robobt.world.state import BallState, Frame, RobotState
+from robobt.world.state import ROBOT_RADIUS, BallState, Frame, RobotState
 
 LOST_DISTANCE = 0.3
 """A ball farther away is not picked up [m]."""
+
+
+_IN_MOUTH, _BEFORE_MOUTH = ROBOT_RADIUS + 0.004, radians(20.0)
+"""A ball this near to the robot's centre [m] and this little off its heading [rad] lies in the mouth."""
 
 
 def grab(me: RobotState, ball: BallState, speed: float, period: float) -> RobotCommand:
     """Creep onto the ball for one tick: turn to it and close in at ``speed``.
 
     The farther the ball is to the side, the slower the robot closes in, so that the ball meets the mouth and
-    not the hull.
+    not the hull. If it is already faster than that and the ball lies in its mouth, it brakes, although the
+    sensor is silent: it would push the ball on faster and faster.
 
     Args:
         me: the robot.
@@ -31,13 +36,21 @@ def grab(me: RobotState, ball: BallState, speed: float, period: float) -> RobotC
         speed: closing speed [m/s].
         period: time until the next command [s].
     """
-    if me.ball_contact:
+    if me.ball_contact or (me.speed > speed and lies_in_mouth(me, ball)):
         return settle(me, period)
     bearing, vx, vy = creeping(me, ball, speed)
     omega = turn_rate(me, bearing, me.limits, period)
     chase = command(me, vx, vy, omega, me.limits, period)
     chase.dribbler = True
     return chase
+
+
+def lies_in_mouth(me: RobotState, ball: BallState) -> bool:
+    """Return whether the ball is so near to the robot's centre that it can only be in the mouth."""
+    dx, dy = ball.x - me.x, ball.y - me.y
+    if dx * dx + dy * dy > _IN_MOUTH * _IN_MOUTH or ball.z > 0.0:
+        return False
+    return abs(wrap_angle(atan2(dy, dx) - me.heading)) < _BEFORE_MOUTH
 
 
 @compilable

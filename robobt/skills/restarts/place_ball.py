@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import field
 from math import atan2, copysign, cos, hypot, inf, radians, sin, sqrt
 
-from robobt.motion.dribbling import settle
+from robobt.motion.dribbling import MAX_ACCELERATION, settle
 from robobt.motion.path_planner import travel
 from robobt.motion.pilot import command, drive, turn_rate
 from robobt.skills.ball.dribble_to import SLIPPED
@@ -21,6 +21,9 @@ from robobt.world.state import BALL_RADIUS, ROBOT_RADIUS
 
 _PLACING_SPEED = 1.0
 """Speed when driving backwards with the ball: 8 m take 10 s of the 30 s that the rules allow [m/s]."""
+
+_WEAK_PLACING_SPEED = 0.85
+"""That speed with a weak dribbler [m/s]: ER-Force's roller loses a ball that is pulled at 0.9 m/s."""
 
 _STOPS_WITHIN = 1.0
 """Distance over which the robot can always stop with the ball [m]."""
@@ -129,13 +132,15 @@ class PlaceBall(DrivingSkill):
                 goal[0] - _BALL_IN_MOUTH_DISTANCE * cos(outwards),
                 goal[1] - _BALL_IN_MOUTH_DISTANCE * sin(outwards),
             )
+            held = me.limits.holds_straight
+            fastest = _WEAK_PLACING_SPEED if held < MAX_ACCELERATION else _PLACING_SPEED
             self.store.command, doing = pull(
                 frame,
                 me,
                 self._holds(),
                 place,
                 self.drive_limits,
-                min(_PLACING_SPEED, sqrt(2.0 * me.limits.holds_straight * _STOPS_WITHIN)),
+                min(fastest, sqrt(2.0 * held * _STOPS_WITHIN)),
                 placing=True,
                 sketch=self.draw,
             )

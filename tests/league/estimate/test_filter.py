@@ -17,7 +17,7 @@ from robobt.match import load_scenario
 from robobt.match.scenario.changes import with_team
 from robobt.sim.realism import REALISM
 from robobt.sim.settings import BallSettings, SimSettings
-from robobt.world.command import RobotCommand
+from robobt.world.command import KickTrigger, RobotCommand
 from robobt.world.field import DIVISION_B
 from robobt.world.game import Team
 from robobt.world.geometry import wrap_angle
@@ -467,3 +467,18 @@ def test_a_kick_on_its_way_is_shown(speed: float) -> None:
     assert shown.ball.x - gap == pytest.approx(speed * 3 * PERIOD, abs=0.03)
     assert shown.last_touch == ME
     assert watched.filter.frame_at(watched.time).own[0].ball_contact
+
+
+@pytest.mark.parametrize("trigger", list(KickTrigger))
+@pytest.mark.parametrize("reported", [True, False])
+def test_a_kick_at_once_is_not_shown_where_the_sensor_is_silent(trigger: KickTrigger, reported: bool) -> None:
+    watched = Watched()
+    watched.filter = VisionFilter(DIVISION_B, SimSettings(), {ME: RobotLimits(dead_time=0.1)})
+    for tick in range(30):
+        watched.see([(ME, 0.0, 0.0, 0.0)], [(SimSettings().body.face + 0.0215, 0.0)])
+        kick = RobotCommand(kick_speed=4.0 if tick >= 28 else 0.0, kick_trigger=trigger)
+        watched.filter.sent(watched.time, {ME: kick})
+    watched.filter.possession.hear([(ME, reported)], watched.time)
+    shown = watched.filter.frame_at(watched.time + 2 * PERIOD, to_effect=True)
+    missed = trigger is KickTrigger.NOW and not reported
+    assert shown.ball.vx == pytest.approx(0.0 if missed else 4.0, abs=0.5)

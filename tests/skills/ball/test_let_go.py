@@ -54,6 +54,12 @@ def test_the_ball_leaves_a_robot_that_drives_at_it(speed: float, kick: float) ->
     assert (alone.command.vx, alone.command.vy, alone.command.dribbler) == (0.0, 0.0, False)
 
 
+def test_it_does_not_kick_again_a_ball_that_has_left() -> None:
+    alone, me = Alone(LetGo()), robot()
+    alone.tick(frame(me, (me.x + 0.2, 0.0, 2.0, 0.0)))
+    assert alone.command.kick_speed == 0.0
+
+
 @pytest.mark.parametrize(("x", "kicks"), [(-1.0, False), (1.0, True)])
 def test_it_does_not_kick_towards_the_own_goal_near_it(x: float, kicks: bool) -> None:
     alone, me = Alone(LetGo()), robot(x, heading=0.6 * pi, contact=True)

@@ -37,6 +37,13 @@ def test_it_closes_in_relative_to_a_rolling_ball() -> None:
     assert alone.command.vx == pytest.approx(1.1)
 
 
+@pytest.mark.parametrize(("speed", "faster"), [(1.2, False), (0.3, True)])
+def test_it_pushes_no_ball_on_that_the_sensor_does_not_report(speed: float, faster: bool) -> None:
+    alone = Alone(PickUpBall())
+    alone.tick(frame(robot(velocity=(speed, 0.0, 0.0)), ball=(0.09, 0.0, speed, 0.0)))
+    assert (alone.command.vx > speed) is faster
+
+
 def test_it_succeeds_once_the_ball_stays_in_the_mouth() -> None:
     alone, me = Alone(PickUpBall(settle=0.05)), robot(contact=True)
     ticks = [alone.tick(frame(me, ball=held(me), time=k / 60)) for k in range(5)]

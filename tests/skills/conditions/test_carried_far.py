@@ -1,8 +1,13 @@
 from __future__ import annotations
 
+from dataclasses import replace
+
+import pytest
+
 from robobt.skills.conditions.carried_far import CarriedFar
 from robobt.testing import frame, held, robot
 from robobt.tree import Status
+from robobt.world.limits import RobotLimits
 from tests.skills.fixed_world import Alone
 
 PERIOD = 1 / 60
@@ -64,3 +69,41 @@ def test_a_ball_that_the_hull_pushes_along_is_carried() -> None:
         me = robot(-step / 30.0, 0.0)
         status = alone.tick(frame(me, (me.x - 0.112, 0.0), time=step * PERIOD))
     assert status is Status.SUCCESS
+
+
+WEAK = RobotLimits(hold_acceleration=0.35, hold_straight=1.0)
+
+
+def carry_weakly(alone: Alone, start: float, end: float, tick: int, *, away: int = 0) -> Status:
+    """As carry() in 30 steps with a weak dribbler; the ball seems to be far ahead for some ticks first."""
+    status = Status.INVALID
+    for step in range(-away, 31):
+        me = replace(robot(start + (end - start) * max(step, 0) / 30, contact=step >= 0), limits=WEAK)
+        ball = held(me) if step >= 0 else (me.x + 0.4, 0.0)
+        status = alone.tick(frame(me, ball, time=(tick + step) * PERIOD))
+    return status
+
+
+@pytest.mark.parametrize(("away", "status"), [(5, Status.SUCCESS), (12, Status.FAILURE)])
+def test_a_ball_that_a_weak_dribbler_loses_for_a_moment_is_still_carried(away: int, status: Status) -> None:
+    alone = Alone(CarriedFar(limit=0.8))
+    assert carry_weakly(alone, 0.0, 0.5, 0) is Status.FAILURE
+    assert carry_weakly(alone, 0.5, 0.8, 31 + away, away=away) is status
+
+
+def test_a_pass_that_leaves_a_weak_dribbler_is_not_a_carry() -> None:
+    alone = Alone(CarriedFar(limit=0.8))
+    carry_weakly(alone, 0.0, 0.5, 0)
+    me = replace(robot(0.5), limits=WEAK)
+    assert alone.tick(frame(me, (0.9, 0.0, 5.0, 0.0), time=31 * PERIOD)) is Status.FAILURE
+
+
+def test_a_ball_that_a_weak_dribbler_lets_go_rolls_on() -> None:
+    assert carry_weakly(Alone(CarriedFar(limit=0.8)), 0.0, 0.73, 0) is Status.FAILURE
+    assert carry_weakly(Alone(CarriedFar(limit=0.8)), 0.0, 0.75, 0) is Status.SUCCESS
+
+
+def test_a_weak_dribbler_s_short_pause_does_not_count_anew() -> None:
+    alone = Alone(CarriedFar(limit=0.8))
+    carry_weakly(alone, 0.0, 0.5, 0)
+    assert carry_weakly(alone, 0.6, 0.8, 42) is Status.SUCCESS
