@@ -30,7 +30,7 @@ _PUSH_GAP = 0.05
 _FEEDBACK_REACH = 0.05
 """A robot's break-beam sensor is trusted while the ball is seen this close to its mouth [m]."""
 
-_SILENT = 0.07
+_BOUNCES_FOR = 0.07
 """A sensor may be silent for this long while the ball bounces on the dribbler [s]."""
 
 _HIDDEN_REACH = 0.3
@@ -162,7 +162,7 @@ class Possession:
         """Return whether the sensor reports the ball, has been silent for a moment only, or never reports."""
         if self.feedback.get(robot) is not False:
             return True
-        return self._now - self._reported.get(robot, -inf) < _SILENT
+        return self._now - self._reported.get(robot, -inf) < _BOUNCES_FOR
 
     def _in_mouth(self, ahead: float, aside: float, slack: float) -> bool:
         body = self._body

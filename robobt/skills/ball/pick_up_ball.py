@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import field
 from math import atan2, cos, hypot, inf, pi, radians, sin
 
-from robobt.motion.dribbling import settle
+from robobt.motion.dribbling import MAX_ACCELERATION, settle
 from robobt.motion.pilot import command, turn_rate
 from robobt.skills.base import Skill, skill
 from robobt.tree import Status
@@ -19,7 +19,7 @@ LOST_DISTANCE = 0.3
 """A ball farther away is not picked up [m]."""
 
 
-_IN_MOUTH, _BEFORE_MOUTH = ROBOT_RADIUS + 0.004, radians(20.0)
+_WITHIN_MOUTH, _BEFORE_MOUTH = ROBOT_RADIUS + 0.004, radians(20.0)
 """A ball this near to the robot's centre [m] and this little off its heading [rad] lies in the mouth."""
 
 
@@ -27,8 +27,8 @@ def grab(me: RobotState, ball: BallState, speed: float, period: float) -> RobotC
     """Creep onto the ball for one tick: turn to it and close in at ``speed``.
 
     The farther the ball is to the side, the slower the robot closes in, so that the ball meets the mouth and
-    not the hull. If it is already faster than that and the ball lies in its mouth, it brakes, although the
-    sensor is silent: it would push the ball on faster and faster.
+    not the hull. If it is already faster and the ball lies in its mouth, a robot with a weak dribbler brakes,
+    although the sensor is silent: it would push the ball on faster and faster.
 
     Args:
         me: the robot.
@@ -36,7 +36,7 @@ def grab(me: RobotState, ball: BallState, speed: float, period: float) -> RobotC
         speed: closing speed [m/s].
         period: time until the next command [s].
     """
-    if me.ball_contact or (me.speed > speed and lies_in_mouth(me, ball)):
+    if me.ball_contact or _pushes_on(me, ball, speed):
         return settle(me, period)
     bearing, vx, vy = creeping(me, ball, speed)
     omega = turn_rate(me, bearing, me.limits, period)
@@ -45,12 +45,13 @@ def grab(me: RobotState, ball: BallState, speed: float, period: float) -> RobotC
     return chase
 
 
-def lies_in_mouth(me: RobotState, ball: BallState) -> bool:
-    """Return whether the ball is so near to the robot's centre that it can only be in the mouth."""
-    dx, dy = ball.x - me.x, ball.y - me.y
-    if dx * dx + dy * dy > _IN_MOUTH * _IN_MOUTH or ball.z > 0.0:
+def _pushes_on(me: RobotState, ball: BallState, speed: float) -> bool:
+    """Return whether a robot with a weak dribbler, faster than ``speed`` [m/s], has the ball in its mouth."""
+    if me.limits.holds_straight >= MAX_ACCELERATION or me.speed <= speed or ball.z > 0.0:
         return False
-    return abs(wrap_angle(atan2(dy, dx) - me.heading)) < _BEFORE_MOUTH
+    dx, dy = ball.x - me.x, ball.y - me.y
+    off = abs(wrap_angle(atan2(dy, dx) - me.heading))
+    return dx * dx + dy * dy <= _WITHIN_MOUTH * _WITHIN_MOUTH and off < _BEFORE_MOUTH
 
 
 @compilable

@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+from dataclasses import replace
 from math import cos, hypot, radians, sin
 
 import pytest
@@ -8,6 +9,7 @@ from robobt.skills import PickUpBall
 from robobt.testing import Trial, blue, eventually, frame, held, robot, succeeds
 from robobt.tree import Status
 from robobt.world import RobotCommand
+from robobt.world.limits import RobotLimits
 from robobt.world.rules import has_ball
 from tests.skills.fixed_world import Alone
 
@@ -38,9 +40,11 @@ def test_it_closes_in_relative_to_a_rolling_ball() -> None:
 
 
 @pytest.mark.parametrize(("speed", "faster"), [(1.2, False), (0.3, True)])
-def test_it_pushes_no_ball_on_that_the_sensor_does_not_report(speed: float, faster: bool) -> None:
+def test_a_weak_dribbler_pushes_no_ball_on_that_its_sensor_misses(speed: float, faster: bool) -> None:
     alone = Alone(PickUpBall())
-    alone.tick(frame(robot(velocity=(speed, 0.0, 0.0)), ball=(0.09, 0.0, speed, 0.0)))
+    weak = RobotLimits(hold_acceleration=0.35, hold_straight=1.0)
+    me = replace(robot(velocity=(speed, 0.0, 0.0)), limits=weak)
+    alone.tick(frame(me, ball=(0.09, 0.0, speed, 0.0)))
     assert (alone.command.vx > speed) is faster
 
 
