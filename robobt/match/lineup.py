@@ -11,12 +11,16 @@ from robobt.motion.path_planner import travel
 from robobt.world.command import RobotCommand
 from robobt.world.geometry import Point, distance
 from robobt.world.presence import SUBSTITUTION_REACH, in_substitution_area
+from robobt.world.rules import STOP_DISTANCE
 from robobt.world.state import ROBOT_RADIUS, Frame, RobotState
 
 _log = logging.getLogger(__name__)
 
 _BENCH_SPACING = 0.3
 """Distance between robots that have left the field [m]."""
+
+_BENCH_CLEARANCE = STOP_DISTANCE + 2.0 * ROBOT_RADIUS
+"""Least distance of a robot that has left from the ball [m]."""
 
 _BEHIND_WALL = 0.3
 """Distance behind the wall of a robot that was taken off [m]."""
@@ -113,6 +117,8 @@ def leave(view: Frame, me: RobotState, leaving: Collection[int]) -> RobotCommand
     """Drive off the field over the nearer touch line, next to the half-way line in the own half.
 
     ``leaving`` has the numbers of all robots that leave; on each side they stand in order of their numbers.
+    If the ball is near that place, they stand at the end of the substitution area, or over the other touch
+    line: beside the ball they could not stay during a stop, and others could not fetch it.
     """
     field = view.field
     before = [
@@ -120,4 +126,7 @@ def leave(view: Frame, me: RobotState, leaving: Collection[int]) -> RobotCommand
     ]
     x = max(-SUBSTITUTION_REACH, -_BENCH_SPACING * (len(before) + 0.5))
     y = copysign((field.half_width + field.outer[1]) / 2, me.y)
-    return travel(view, me, (x, y), 0.0, me.limits, avoid_ball=True)
+    places = (x, y), (ROBOT_RADIUS - SUBSTITUTION_REACH, y), (x, -y)
+    ball = view.ball.position
+    clear = (place for place in places if distance(place, ball) > _BENCH_CLEARANCE)
+    return travel(view, me, next(clear, (x, y)), 0.0, me.limits, avoid_ball=True)

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from math import hypot
 
 import pytest
 
 from robobt.match import MatchLoop, load_scenario
+from robobt.match.lineup import leave
 from robobt.sim import SimWorld
+from robobt.testing import frame, robot
 from robobt.world import Frame, GameState, RefereeCommand, RobotId, Team
 from robobt.world.game import TeamStatus
 from robobt.world.protocol import World
@@ -98,6 +101,12 @@ def test_two_robots_leave_and_the_goalkeeper_stays() -> None:
     controlled = Controlled()
     controlled.game = replace(controlled.game, blue=TeamStatus(keeper=5, max_robots=4))
     assert beside(controlled.play(6.0)) == {3, 4}
+
+
+@pytest.mark.parametrize(("ball", "stays"), [((0.6, -2.84), True), ((-0.2, -3.25), False)])
+def test_a_robot_that_has_left_makes_way_for_the_ball(ball: tuple[float, float], stays: bool) -> None:
+    command = leave(frame(robot(-0.15, -3.15), ball), robot(-0.15, -3.15), {1})
+    assert (hypot(command.vx, command.vy) < 0.01) is stays
 
 
 def test_a_robot_that_has_left_is_not_there_for_the_trees() -> None:

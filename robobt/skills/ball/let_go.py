@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from math import cos, sin
 
+from robobt.motion.dribbling import MAX_ACCELERATION
 from robobt.skills.base import Skill, skill
 from robobt.tree import Status
 from robobt.world.command import KickTrigger
@@ -14,6 +15,9 @@ from robobt.world.rules import keeps_ball
 FASTER = 1.0
 """How much faster the ball leaves than it moved along the heading before [m/s]."""
 
+BACKING = 1.0
+"""Speed with which a robot backs away from a ball that lies in its mouth [m/s]."""
+
 
 @skill
 class LetGo(Skill):
@@ -21,14 +25,17 @@ class LetGo(Skill):
 
     Runs for as long as it is ticked. Braking alone soon separates the robot from a ball in its direction of
     travel, but a ball carried sideways would stay for up to another 0.5 m. In its own half, facing its own
-    goal, the robot only brakes.
+    goal, the robot only brakes; with a weak dribbler, which may have stopped with the ball, it backs away.
     """
 
     def on_running(self) -> Status:
         """Kick if the ball is before the kicker."""
-        speed, command = push_speed(self.me, self.ball), self.store.command
-        if speed > 0.0 and keeps_ball(self.me, self.ball):
+        me, ball, command = self.me, self.ball, self.store.command
+        speed = push_speed(me, ball)
+        if speed > 0.0 and keeps_ball(me, ball):
             command.kick_speed, command.kick_trigger = speed, KickTrigger.NOW
+        elif me.limits.holds_straight < MAX_ACCELERATION:
+            command.vx = -BACKING
         return self.run("letting go")
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from math import hypot, pi
 
 import pytest
@@ -13,6 +14,7 @@ from robobt.testing import Trial, always, blue, frame, held, robot
 from robobt.testing.frames import HELD
 from robobt.tree import Behaviour, Status
 from robobt.world import Frame
+from robobt.world.limits import RobotLimits
 from robobt.world.rules import CARRY_DISTANCE, keeps_ball
 from tests.skills.fixed_world import Alone
 
@@ -58,6 +60,13 @@ def test_it_does_not_kick_again_a_ball_that_has_left() -> None:
     alone, me = Alone(LetGo()), robot()
     alone.tick(frame(me, (me.x + 0.2, 0.0, 2.0, 0.0)))
     assert alone.command.kick_speed == 0.0
+
+
+def test_a_weak_dribbler_backs_away_from_a_ball_that_it_must_not_kick() -> None:
+    alone, weak = Alone(LetGo()), RobotLimits(hold_acceleration=0.35, hold_straight=1.0)
+    me = replace(robot(-1.0, heading=pi, contact=True), limits=weak)
+    alone.tick(frame(me, held(me)))
+    assert (alone.command.vx, alone.command.kick_speed) == (-1.0, 0.0)
 
 
 @pytest.mark.parametrize(("x", "kicks"), [(-1.0, False), (1.0, True)])
