@@ -24,6 +24,9 @@ _GRAB_SPEED = 0.4
 _FETCHING_SPEED = 0.5
 """Speed when driving backwards with the ball [m/s]."""
 
+_PULL_TURN = 1.0
+"""Turning rate when driving backwards with the ball, if the dribbler holds it so in the curve [rad/s]."""
+
 _PULL_ACCELERATION = 0.8
 """Deceleration when driving backwards with the ball in the dribbler [m/s^2]."""
 
@@ -64,7 +67,7 @@ def pull(
     if held:
         pulling = dribbling_limits(
             max_speed=speed,
-            max_turn=1.0,
+            max_turn=min(_PULL_TURN, me.limits.hold_acceleration / speed),
             max_acceleration=min(_PULL_ACCELERATION, me.limits.holds_straight),
         )
         near = distance(me.position, place) < _STEADY_DISTANCE

@@ -6,6 +6,7 @@ from dataclasses import field
 from math import atan2, cos, hypot, inf, sin
 
 from robobt.motion.ball_watch import BallWatch
+from robobt.motion.dribbling import MAX_ACCELERATION
 from robobt.motion.path_planner import travel
 from robobt.motion.pilot import roughly, travel_time
 from robobt.skills.ball.pick_up_ball import Grip, grab
@@ -29,6 +30,8 @@ _FACING_RANGE = 1.0
 _NEAR_ENOUGH = 0.15
 """Distance within which the robot counts as there [m]; without it the robot would back away from the ball
 over the last centimetres."""
+_NEAR_ENOUGH_WEAKLY = 0.03
+"""That distance with a weak dribbler, which cannot brake a ball that the robot drives into [m]."""
 _SEARCH_STEP = 0.15
 _SEARCH_HORIZON = 4.0
 
@@ -144,9 +147,10 @@ class Intercept(DrivingSkill):
 def _arrival(me: RobotState, point: Point, ux: float, uy: float, limits: RobotLimits) -> float:
     dx, dy = point[0] + _MEETING_DISTANCE * ux - me.x, point[1] + _MEETING_DISTANCE * uy - me.y
     gap = hypot(dx, dy)
-    if gap <= _NEAR_ENOUGH:
+    near = _NEAR_ENOUGH_WEAKLY if me.limits.holds_straight < MAX_ACCELERATION else _NEAR_ENOUGH
+    if gap <= near:
         return 0.0
-    return travel_time(gap - _NEAR_ENOUGH, (me.vx * dx + me.vy * dy) / gap, limits)
+    return travel_time(gap - near, (me.vx * dx + me.vy * dy) / gap, limits)
 
 
 def _way_to_border(field: FieldGeometry, ball: BallState, ux: float, uy: float) -> float:

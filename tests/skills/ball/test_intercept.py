@@ -8,8 +8,10 @@ from robobt.motion.pilot import travel_time
 from robobt.skills import Intercept
 from robobt.skills.ball.intercept import earliest_meeting, meet
 from robobt.testing import (
+    Trial,
     alone,
     always,
+    blue,
     eventually,
     frame,
     held,
@@ -92,3 +94,11 @@ def test_it_takes_balls_that_come_by(preset: str, pose: tuple[float, ...], ball:
         eventually("it has the ball", succeeds(intercept)),
         always("inside the field", inside_the_field),
     )
+
+
+@pytest.mark.parametrize("ball", [(1.5, 0.0, -0.9, 0.0), (1.2, 0.5, -0.6, -0.2), (2.0, 0.0, -0.5, 0.0)])
+def test_a_weak_dribbler_does_not_drive_into_the_ball(ball: tuple[float, float, float, float]) -> None:
+    trial = Trial({blue(1): Intercept()}, {blue(1): (0.0, 0.0, 0.0)}, ball, "erforce")
+    trial.run(1.5)
+    met = next(frame for frame in trial.frames if frame.own[0].ball_contact)
+    assert met.own[0].speed < 0.5
