@@ -41,17 +41,17 @@ def pass_player(
         quickest: highest speed and acceleration assumed of opponents [m/s, m/s^2].
         reaction: reaction time assumed of opponents to a kick [s].
     """
-
-    def choose() -> ChooseSafePass:
-        return ChooseSafePass(enough=enough, patience=patience)
-
     attack = first_of(
         "keep the ball",
         let_go(),
         KickLoose(),
         ReceivePass(redirect_at=1.0),
         SettleBall(),
-        when("pass", choose(), KickToTarget(take=True, pass_tolerance=PASS_TOLERANCE)),
+        when(
+            "pass",
+            ChooseSafePass(enough=enough, patience=patience),
+            KickToTarget(take=True, pass_tolerance=PASS_TOLERANCE),
+        ),
         when("get the ball", GoToBall(), PickUpBall()),
     )
     restart = first_of(
@@ -59,7 +59,12 @@ def pass_player(
         Sequence(
             "take it",
             memory=True,
-            children=[MayTouchBall(), choose(), KickToTarget(pass_tolerance=PASS_TOLERANCE)],
+            children=[
+                # Chosen before the whistle too, so that the robot stands behind the ball for it.
+                ChooseSafePass(enough=0.0, least=0.0),
+                MayTouchBall(),
+                KickToTarget(pass_tolerance=PASS_TOLERANCE),
+            ],
         ),
         PrepareRestart(stay=True),
     )

@@ -11,9 +11,12 @@ from robobt.skills.base import Skill, skill
 from robobt.skills.rate_limit import RateLimit
 from robobt.skills.store import Pass
 from robobt.skills.tactics.agree import agree
-from robobt.skills.tactics.keeping import SHORTEST, KeepingPlaces, rate_receptions, worth_of
+from robobt.skills.tactics.keeping import SHORTEST, rate_receptions, worth_of
 from robobt.tree import Status
 from robobt.world.rules import has_ball
+
+_RUNS_ON = 0.2
+"""A pass goes to where its receiver will be after this time; one with farther to go seldom takes it [s]."""
 
 _KICK_DELAY = 0.15
 """Time until the kick of a robot that is turned to its receiver [s]."""
@@ -69,7 +72,7 @@ class ChooseSafePass(Skill):
         """Rate the passes."""
         frame, store = self.frame, self.store
         plan = agree(frame, store.team)
-        if frame.time - self._seen > plan.tactics.anew_after or not frame.game.may_touch:
+        if frame.time - self._seen > plan.tactics.anew_after:
             self._pass, self._since = None, frame.time
         self._seen = frame.time
         if self._look.due(frame.time):
@@ -85,21 +88,12 @@ class ChooseSafePass(Skill):
         frame, me, ball, team = self.frame, self.me, self.ball, self.store.team
         plan, last = team.plan, self._pass
         self._pass = None
-        places = team.shared(KeepingPlaces)
-        places.follow(frame, team, plan)
         points, owners = [], []
         for mate in frame.teammates(me.id):
-            x, y = mate.x + 0.2 * mate.vx, mate.y + 0.2 * mate.vy
-            place = places.places.get(mate.id, (x, y))
-            gap = hypot(place[0] - x, place[1] - y)
-            share = min(1.0, 0.5 / gap) if gap > 0.0 else 0.0
-            for part in (0.0, 0.5, 1.0):
-                point = (x + part * share * (place[0] - x), y + part * share * (place[1] - y))
-                if hypot(point[0] - ball.x, point[1] - ball.y) >= SHORTEST and frame.field.contains(
-                    *point, -0.2
-                ):
-                    points.append(point)
-                    owners.append(mate.id)
+            x, y = mate.x + _RUNS_ON * mate.vx, mate.y + _RUNS_ON * mate.vy
+            if hypot(x - ball.x, y - ball.y) >= SHORTEST and frame.field.contains(x, y, -0.2):
+                points.append((x, y))
+                owners.append(mate.id)
         if not points:
             return
         at = np.array(points)

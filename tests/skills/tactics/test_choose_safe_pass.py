@@ -8,6 +8,7 @@ from robobt.skills.tactics.keeping import SHORTEST
 from robobt.testing import frame, held, robot
 from robobt.tree import Status
 from robobt.world import RobotState
+from robobt.world.game import OPEN_PLAY, GameState, RefereeCommand
 from tests.skills.fixed_world import Alone
 
 ME = robot(-2.0, 0.0, number=1, contact=True)
@@ -20,8 +21,8 @@ class Keeper:
         self.alone, self.mates = Alone(skill), mates
         self.alone.store.team.plan.players.update((1, *(mate.id for mate in mates)))
 
-    def at(self, time: float, *theirs: RobotState) -> Status:
-        view = frame(ME, held(ME), self.mates, theirs, time)
+    def at(self, time: float, *theirs: RobotState, game: GameState = OPEN_PLAY) -> Status:
+        view = frame(ME, held(ME), self.mates, theirs, time, game)
         agree(view, self.alone.store.team)
         return self.alone.tick(view, 1)
 
@@ -42,6 +43,20 @@ def test_a_mate_that_is_too_near_gets_no_pass() -> None:
     keeper.at(0.0)
     chosen = keeper.alone.store.pass_
     assert chosen is None or abs(chosen.target[0] - held(ME)[0]) >= SHORTEST - 1e-9
+
+
+def test_a_pass_leads_a_mate_that_moves() -> None:
+    keeper = Keeper(ChooseSafePass(enough=0.0), robot(-2.0, 1.6, number=2, velocity=(1.0, 0.0, 0.0)))
+    keeper.at(0.0)
+    chosen = keeper.alone.store.pass_
+    assert chosen is not None
+    assert chosen.target == pytest.approx((-1.8, 1.6))
+
+
+def test_a_pass_is_chosen_before_the_whistle_too() -> None:
+    keeper = Keeper(ChooseSafePass(enough=0.0, least=0.0), robot(-2.0, 1.6, number=2))
+    game = GameState(RefereeCommand.STOP, may_touch=False)
+    assert [keeper.at(step / 60, game=game) for step in range(3)] == [Status.SUCCESS] * 3
 
 
 def test_a_poor_pass_is_played_only_after_a_while() -> None:
@@ -71,7 +86,7 @@ def test_a_pressed_robot_passes_where_it_looks() -> None:
 @pytest.mark.parametrize(("speed", "status"), [(0.0, Status.FAILURE), (-2.0, Status.SUCCESS)])
 def test_an_opponent_that_comes_before_the_kick_ends_the_waiting(speed: float, status: Status) -> None:
     comes = robot(-0.9, -0.2, number=6, velocity=(speed, 0.0, 0.0))
-    keeper = Keeper(ChooseSafePass(enough=1.0, least=0.01), robot(-2.0, 1.6, number=3))
+    keeper = Keeper(ChooseSafePass(enough=1.0, least=0.0), robot(-2.0, 1.6, number=3))
     assert keeper.at(0.0, comes) is status
 
 
