@@ -78,7 +78,11 @@ def pass_player(
         {
             "halt": Stop(),
             "take_restart": restart,
-            "kickoff": GoToKickoffPosition(spare_mates=True),
+            "kickoff": first_of(
+                "kick-off",
+                when("ours", MayTouchBall(), ShowForPass()),
+                GoToKickoffPosition(spare_mates=True),
+            ),
             "dead_ball": first_of(
                 "ball is dead",
                 when("ours", MayTouchBall(), ShowForPass()),

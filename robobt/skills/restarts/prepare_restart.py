@@ -13,7 +13,7 @@ from robobt.world.state import ROBOT_RADIUS
 
 _STOP_GAP = STOP_DISTANCE + ROBOT_RADIUS + 0.08
 
-_OWN_HALF = ROBOT_RADIUS + 0.03
+IN_OWN_HALF = ROBOT_RADIUS + 0.03
 """A robot whose centre is this far from the half-way line is in its half as a whole [m]."""
 
 
@@ -46,7 +46,7 @@ class PrepareRestart(Skill):
             return self.succeed("it may be taken")
         spot = game.placement or frame.ball.position
         x, y = _before(spot, self._aim(), -(_STOP_GAP if game.stopped else self.gap))
-        if game.restart is Restart.KICKOFF and x > -_OWN_HALF:
+        if game.restart is Restart.KICKOFF and x > -IN_OWN_HALF:
             # The robot stays in its own half, even if the ball is to be kicked back.
             x, y = _before(spot, frame.field.their_goal, -(_STOP_GAP if game.stopped else self.gap))
         if game.stopped and not frame.field.contains(x, y):
