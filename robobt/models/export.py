@@ -37,8 +37,11 @@ from robobt.models.policy import load_policy, quiet
 MAX_EXPORT_SIZE = 2**20
 """A skill's network is small; a file longer than this is a mistake [bytes]."""
 
-EXPORT_TOLERANCE = 1e-6
-"""Largest difference of any output between a TorchScript file and its network."""
+EXPORT_TOLERANCE = 1e-5
+"""Largest difference of any output between a TorchScript file and its network.
+
+Sums in single precision in another order differ by up to 3e-6 in a network over 21 robots.
+"""
 
 _ONNX_ROUNDING = 1e-5
 """Largest difference for ONNX, as a share of the largest output."""
@@ -58,8 +61,8 @@ def export_model(
     The module takes float32 (batch, ``card.observation.size``), the raw
     observation in SI units, and answers (batch, ``len(card.outputs)``): actions in
     [-1, 1], or probabilities. Each file is loaded again before it takes its place,
-    and its answers to 1000 random inputs are compared with the module's: to 1e-6, or
-    1e-5 of the largest answer in ONNX, whose runtime adds up in another order. The same
+    and its answers to 1000 random inputs are compared with the module's: to 1e-5, in
+    ONNX of the largest answer, because they may add up in another order. The same
     module and card give the same file.
 
     Args:
