@@ -11,8 +11,8 @@ from robobt.tree import Behaviour
 @PLAYS.register("any_number_player")
 def any_number_player(
     *,
-    model: str = "any_number_imitated",
-    tasks: OpenPlayTasks = "by_number",
+    model: str = "any_number_ppo",
+    tasks: OpenPlayTasks = "near_ball",
     tactics: TacticsSettings = DEFAULT_TACTICS,
 ) -> Behaviour:
     """Play in a team of two to eleven robots by one policy while the ball is in play.
@@ -22,9 +22,9 @@ def any_number_player(
 
     Args:
         model: name or file of a model for a task with several robots whose network treats robots as sets.
-        tasks: which field players the policy moves: ``all``, or with ``attack`` attacker, receivers and
-            supporters, while wall and markers are hand-written. ``by_number``: ``all`` in teams of up to
-            three robots, ``attack`` in larger ones.
+        tasks: which field players the policy moves: ``near_ball``, the three that can have the ball first,
+            with ``attack`` attacker, receivers and supporters, or ``all``. The others play their tasks in the
+            team's plan, such as wall and markers.
         tactics: settings of the team's tactics, which say who attacks, marks and stands in the wall.
     """
     return team_player(open_play=model, open_play_tasks=tasks, tactics=tactics)

@@ -24,7 +24,6 @@ from robobt.skills.conditions.ball_in_own_half import BallInOwnHalf
 from robobt.skills.conditions.carried_far import CarriedFar
 from robobt.skills.conditions.has_ball import HasBall
 from robobt.skills.conditions.may_touch_ball import MayTouchBall
-from robobt.skills.conditions.small_team import SmallTeam
 from robobt.skills.defence.avoid_crash import AvoidCrash
 from robobt.skills.defence.stay_out import StayOut
 from robobt.skills.plan import Omitted
@@ -55,8 +54,11 @@ SURE = 0.5
 """Least chance that a pass from a restart arrives; the ball is safe before it."""
 
 
-OpenPlayTasks = Literal["all", "attack", "by_number"]
+OpenPlayTasks = Literal["all", "attack", "near_ball"]
 """Tasks that a model plays in open play."""
+
+NEAR_BALL = 3
+"""Number of robots that a model moves with the tasks ``near_ball``."""
 
 WEAKEST = 0.5
 """Share of the dribbler in training with which the team's learned attack still plays."""
@@ -95,8 +97,8 @@ def team_player(
         open_play: name or file of a model for a task with several robots, which plays while the ball is in
             play and replaces ``score``; empty for the hand-written tasks.
         open_play_tasks: tasks that this model plays: ``all``, which replaces ``go`` too, or with ``attack``
-            those of attacker, receivers and supporters; the wall and the markers are then hand-written.
-            ``by_number``: ``all`` in teams of up to three robots, ``attack`` in larger ones.
+            those of attacker, receivers and supporters; the wall and the markers are then hand-written. With
+            ``near_ball`` it moves the three field players that can have the ball first.
         without: a part of the tactics to switch off, for every robot of the team, so that a tournament
             measures its worth.
         tactics: settings of the team's tactics, such as ``{switch_gain: 0.5}``; settings of one robot apply
@@ -107,8 +109,10 @@ def team_player(
         return ChooseKick(shoot_at=shoot_at, pass_at=pass_at, patience=patience, chips=chips)
 
     in_play: dict[str, Behaviour] = {} if open_play else {"attack": attack(choose, without, score)}
-    if open_play and open_play_tasks != "all":
+    if open_play and open_play_tasks == "attack":
         in_play = {task: play_on(open_play, f"{task} by model") for task in ("attack", "receive", "support")}
+    elif open_play and open_play_tasks == "near_ball":
+        in_play = dict.fromkeys(("attack", "assist"), play_on(open_play))
     player = TaskSwitch(
         "part",
         {
@@ -129,9 +133,10 @@ def team_player(
             ),
             **in_play,
         },
-        otherwise=without_ball(open_play, open_play_tasks, go),
+        otherwise=play_on(open_play) if open_play and open_play_tasks == "all" else TakePlace(policy=go),
         without=without,
         tactics=tactics,
+        at_ball=NEAR_BALL if open_play and open_play_tasks == "near_ball" else 0,
     )
     return StayOut("team player", player if without == "avoid_crash" else AvoidCrash("no crash", player))
 
@@ -167,15 +172,6 @@ def attack(choose: Callable[[], ChooseKick], without: Omitted = "nothing", score
 def play_on(model: str, name: str = "open play") -> Behaviour:
     """Play by a model, which does not observe how far it may still carry the ball; ``name`` is the tree's."""
     return first_of(name, let_go(), get_where_stuck(), LearnedSkill(model=model))
-
-
-def without_ball(open_play: str, tasks: OpenPlayTasks, go: str) -> Behaviour:
-    """Return the tree for the tasks that are not the attack; parameters as for :func:`team_player`."""
-    if not open_play or tasks == "attack":
-        return TakePlace(policy=go)
-    if tasks == "all":
-        return play_on(open_play)
-    return first_of("without ball", when("few", SmallTeam(), play_on(open_play)), TakePlace(policy=go))
 
 
 def let_go() -> Behaviour:

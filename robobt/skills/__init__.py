@@ -67,7 +67,6 @@ from robobt.skills.conditions.is_restart import IsRestart as IsRestart
 from robobt.skills.conditions.is_second_to_ball import IsSecondToBall as IsSecondToBall
 from robobt.skills.conditions.may_touch_ball import MayTouchBall as MayTouchBall
 from robobt.skills.conditions.opponent_has_ball import OpponentHasBall as OpponentHasBall
-from robobt.skills.conditions.small_team import SmallTeam as SmallTeam
 from robobt.skills.conditions.stuck_at_ball import StuckAtBall as StuckAtBall
 from robobt.skills.conditions.team_has_ball import TeamHasBall as TeamHasBall
 from robobt.skills.conditions.under_pressure import UnderPressure as UnderPressure

@@ -32,10 +32,12 @@ class Task(StrEnum):
     """Keeps an opponent from getting a pass."""
     SUPPORT = "support"
     """Waits where a pass can reach it and is useful."""
+    ASSIST = "assist"
+    """Goes for the ball beside the attacker, in a team that sends several robots to it."""
 
 
 # CPython 3.11 takes forty times as long to find a member in its enumeration as a name of this module.
-ATTACK, RECEIVE, MARK, SUPPORT = Task.ATTACK, Task.RECEIVE, Task.MARK, Task.SUPPORT
+ATTACK, RECEIVE, MARK, SUPPORT, ASSIST = Task.ATTACK, Task.RECEIVE, Task.MARK, Task.SUPPORT, Task.ASSIST
 
 
 Omitted: TypeAlias = Literal[
@@ -57,6 +59,8 @@ class TeamPlan:
         players: numbers of the field players that take part.
         without: parts of the tactics that are switched off.
         tactics: settings of the team's tactics.
+        at_ball: number of robots that go for the ball while it is in play, the attacker among them; 0 for the
+            attacker alone, beside the receivers of its passes.
         numbers: result of :func:`~robobt.skills.tactics_settings.applied` for the present field and ball.
         tasks: task of every player.
         places: where each player without another target is to stand [m].
@@ -85,6 +89,7 @@ class TeamPlan:
     players: set[int] = field(default_factory=set)
     without: Omitted = "nothing"
     tactics: TacticsSettings = DEFAULT_TACTICS
+    at_ball: int = 0
     numbers: FloatArray = field(default_factory=lambda: np.empty(0))
     _applied: tuple[object, ...] = (None, None, None)
     tasks: dict[int, Task] = field(default_factory=dict)

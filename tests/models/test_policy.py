@@ -182,6 +182,7 @@ print(json.dumps(found))
 """
 HASHES = {
     "any_number_imitated": "2dcd4c2e",
+    "any_number_ppo": "81f238ec",
     "duel_ppo": "7d9e0d00",
     "go_to_ball_among_robots_ppo": "394debab",
     "go_to_ball_ddpg": "9043f855",

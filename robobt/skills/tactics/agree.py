@@ -15,7 +15,7 @@ import numpy as np
 from robobt.motion.meetings import meetings_of
 from robobt.skills.aim.goalkeeper_watch import GoalkeeperWatch
 from robobt.skills.kicker import follow_restart
-from robobt.skills.plan import ATTACK, MARK, SUPPORT, Task, TeamPlan
+from robobt.skills.plan import ASSIST, ATTACK, MARK, SUPPORT, Task, TeamPlan
 from robobt.skills.store import Pass, TeamStore
 from robobt.skills.tactics.assignment import NO_JOB, jobs_of
 from robobt.skills.tactics.attacker import NOBODY, AttackerCandidate, choose_attacker, may_be_attacked
@@ -164,7 +164,10 @@ def _share_out(frame: Frame, team: TeamStore, plan: TeamPlan, players: list[Robo
         plan.ahead = frame.ball.x > 0.0
     team.threats = []
     tasks = {} if team.attacker is None else {team.attacker: ATTACK}
-    tasks |= _meant(frame, team, plan)
+    if plan.at_ball and frame.game.in_play:
+        tasks |= _assistants(plan, [robot.id for robot in players if robot.id not in tasks], len(tasks))
+    else:
+        tasks |= _meant(frame, team, plan)
     free = [robot for robot in players if robot.id not in tasks]
     jobs = _jobs(frame, team, plan, len(players), len(free)) if free else []
     marks = {}
@@ -175,6 +178,13 @@ def _share_out(frame: Frame, team: TeamStore, plan: TeamPlan, players: list[Robo
             marks[robot.id] = marked
     plan.tasks = tasks
     plan.marks = team.marks = marks
+
+
+def _assistants(plan: TeamPlan, free: list[int], attackers: int) -> dict[int, Task]:
+    """Let those of the ``free`` robots assist that can have the ball first; assistants tend to stay."""
+    gain = plan.tactics.switch_gain
+    free.sort(key=lambda number: plan.own_times[number] - gain * (plan.tasks.get(number) is ASSIST))
+    return dict.fromkeys(free[: plan.at_ball - attackers], ASSIST)
 
 
 def _meant(frame: Frame, team: TeamStore, plan: TeamPlan) -> dict[int, Task]:

@@ -38,6 +38,7 @@ class Part(StrEnum):
     WALL = "wall"
     MARK = "mark"
     SUPPORT = "support"
+    ASSIST = "assist"
 
 
 _LINED_UP, _DEAD_BALL = Part.KICKOFF.value, Part.DEAD_BALL.value
@@ -54,6 +55,8 @@ class TaskSwitch(Switch, Bound[Store]):
         otherwise: the child for every other part.
         without: parts of the tactics that are switched off, for comparisons.
         tactics: settings of the team's tactics. Settings given to one robot apply to its whole team.
+        at_ball: number of the team's robots with the part ``attack`` or ``assist`` while the ball is in play,
+            those that can have the ball first; 0 for the attacker alone.
 
     Raises:
         ValueError: a case does not name a part; the message lists all parts.
@@ -69,10 +72,12 @@ class TaskSwitch(Switch, Bound[Store]):
         otherwise: Behaviour | None = None,
         without: Omitted = "nothing",
         tactics: TacticsSettings = DEFAULT_TACTICS,
+        at_ball: int = 0,
     ) -> None:
         super().__init__(name, cases, otherwise=otherwise)
         self.without: Omitted = without
         self.tactics = tactics
+        self.at_ball = at_ball
         self._told = False
 
     def case(self) -> str:
@@ -83,6 +88,7 @@ class TaskSwitch(Switch, Bound[Store]):
             self._told = True
             team.plan.players.add(number)
             team.plan.without = self.without
+            team.plan.at_ball = self.at_ball
             team.plan.change_tactics(self.tactics)
             team.attackers.add(number)
             team.plan.frame = team.followed = None

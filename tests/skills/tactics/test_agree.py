@@ -45,6 +45,33 @@ def test_the_attacker_changes_only_for_a_clear_gain() -> None:
     assert agreement.team.attacker == 4
 
 
+def test_several_robots_go_for_a_ball_in_play_if_the_team_wants_it() -> None:
+    agreement = Agreement()
+    agreement.team.plan.at_ball = 3
+    plan = agreement.at(0.0)
+    assert {number: plan.tasks[number] for number in (3, 4, 5)} == {
+        3: Task.ATTACK,
+        4: Task.ASSIST,
+        5: Task.ASSIST,
+    }
+    assert not {plan.tasks[1], plan.tasks[2]} & {Task.ATTACK, Task.ASSIST}
+    assert Task.ASSIST not in agreement.at(0.1, game=free_kick(Team.BLUE, (0.0, 0.0))).tasks.values()
+
+
+def test_a_robot_assists_until_another_is_clearly_nearer() -> None:
+    agreement = Agreement()
+    agreement.team.plan.at_ball = 2
+
+    def assistant(time: float, ball: tuple[float, float]) -> int:
+        tasks = agreement.at(time, ball).tasks
+        return next(number for number, task in tasks.items() if task is Task.ASSIST)
+
+    assert assistant(0.0, (-0.2, 0.0)) == 4
+    assert assistant(1.0, (-0.2, -0.2)) == 4
+    assert assistant(2.0, (-0.2, -1.2)) == 5
+    assert assistant(3.0, (-0.2, -0.2)) == 5
+
+
 def test_a_pass_under_way_belongs_to_its_receiver() -> None:
     agreement = Agreement()
     team = agreement.team
