@@ -18,8 +18,8 @@ from robobt.match.scenario.changes import changed
 from robobt.match.scenario.scenario import Scenario, load_scenario
 from robobt.skills.aim.raters.expected_goal import ExpectedGoal
 from robobt.statistics import clopper_pearson_interval
-from robobt.what_if import Branches, LoggedMatch, load_logged, scan
-from robobt.what_if.scan import moments_of
+from robobt.what_if import Branches, LoggedMatch, load_logged, promising_moments, scan
+from robobt.what_if.moments import moments_of
 from robobt.what_if.standing import standing
 from robobt.world.game import Team
 from robobt.world.rules import owner
@@ -31,20 +31,20 @@ PLANTED = Path(__file__).with_name("planted_mistake.py")
 TRIALS, OUTSIDE = 39, 2
 """Branches of a moment, and the rank from either end that bounds their 90 % interval: 36 of 40 gaps."""
 
-GOOD_CHANCE, EARLIEST = 0.1, 20.0
+GOOD_CHANCE, EARLIEST = 0.3, 5.0
 """Chance of a shot from which a robot that has the ball makes its mistake, and from when on [s]."""
 
 HELD = 0.2
 """Time for which the robot has had the ball before its mistake [s]."""
 
-COST, COST_TRIALS, COST_TRIALS_AGAIN = 0.2, 12, 24
+COST, COST_TRIALS = 0.3, (8, 24)
 """Expected goals that a mistake costs at least, and in how many pairs of branches, first and once more."""
 
 OTHER_BRANCHES = 1_000_000
 """Added to the seed of a scan's branches for those from which the cost of a mistake comes."""
 
-SEARCHED = 45.0
-"""Length of the matches in which a good chance is looked for [s]."""
+SEARCHED, LONG_ENOUGH = 45.0, 30.0
+"""Length of the matches in which a good chance is looked for, and least length of those scanned [s]."""
 
 FOUND_WITHIN = 1.0
 """A moment counts as that of the mistake up to this long before and after [s]."""
@@ -210,30 +210,35 @@ def mistaken(scenario: Scenario, robot: RobotId, at: float) -> Scenario:
     return changed(scenario, {f"{robot}.play": f"{PLANTED}:mistaken_player", f"{robot}.at": at})
 
 
-def costly_mistake(logged: LoggedMatch, seed: int) -> tuple[float, RobotId, float] | None:
-    """Return the first time at which a mistake really costs something, the robot, and what it costs.
+def costly_mistake(folder: Path, seed: int) -> tuple[LoggedMatch, float, RobotId, float] | None:
+    """Return a match with a mistake that costs something, when, whose it is, and what it costs.
 
-    What a mistake costs is the mean difference of pairs of branches of the match without it, in which the
-    robot plays on or makes the mistake [expected goals]. What is returned comes from fresh branches.
+    What a mistake costs is the mean difference of pairs of branches of the match with the mistake, in which
+    the robot plays on or makes it [expected goals]. It has to reach :data:`COST` in two sets of branches,
+    neither of which a search sees; the second one's mean is returned.
     """
-    for at, robot in good_chances(logged):
-        right, wrong = Branches(logged), Branches(logged, mistaken(logged.scenario, robot, at))
+    without = recorded(folder, six_a_side(SEARCHED), seed)
+    for at, robot in good_chances(without):
+        logged = recorded(folder, mistaken(six_a_side(max(LONG_ENOUGH, at + 6.0)), robot, at), seed)
+        right, wrong = Branches(logged, without.scenario), Branches(logged)
         for played in (right, wrong):
             played.begin(logged.tick(at))
-
-        def lost(trials: range, right: Branches = right, wrong: Branches = wrong) -> float:
-            pairs = [
-                [one.play(seed, trial, follow=[Team.YELLOW]) for one in (right, wrong)] for trial in trials
+        cost, first = 0.0, 0
+        for trials in COST_TRIALS:
+            values = [
+                [
+                    played.play(OTHER_BRANCHES + seed, trial, follow=[Team.YELLOW]).value(Team.BLUE)
+                    for played in (right, wrong)
+                ]
+                for trial in range(first, first + trials)
             ]
-            return fmean(one.value(Team.BLUE) - other.value(Team.BLUE) for one, other in pairs)
-
-        cost = lost(range(COST_TRIALS))
-        if cost >= COST:
-            cost = lost(range(COST_TRIALS, COST_TRIALS + COST_TRIALS_AGAIN))
+            cost, first = fmean(good - bad for good, bad in values), first + trials
+            if cost < COST:
+                break
         right.close()
         wrong.close()
         if cost >= COST:
-            return at, robot, cost
+            return logged, at, robot, cost
     return None
 
 
@@ -252,14 +257,14 @@ def find_mistakes(
     found: list[dict[str, object]] = []
     while len(found) < count:
         seed += 1
-        mistake = costly_mistake(recorded(folder, six_a_side(SEARCHED), seed), OTHER_BRANCHES + seed)
+        mistake = costly_mistake(folder, seed)
         if mistake is None:
             continue
-        at, robot, cost = mistake
-        logged = recorded(folder, mistaken(six_a_side(at + 6.0), robot, at), seed)
+        logged, at, robot, cost = mistake
         began = time.process_time()
         played = Branches(logged)
-        moments = scan(logged, Team.BLUE, played, every=1.0, count=5, trials=16, first=2, seed=seed)
+        there = promising_moments(logged, Team.BLUE, 1.0)
+        moments = scan(logged, Team.BLUE, played, there, count=5, trials=16, first=2, seed=seed)
         played.close()
         taken = time.process_time() - began
         near = [abs(one.time - at) <= FOUND_WITHIN for one in moments]

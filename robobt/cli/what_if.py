@@ -112,9 +112,10 @@ def what_if(
     """Play a moment of a logged match on, many times, with what was decided and with other decisions.
 
     With --blue or --yellow that team plays otherwise from --at on. Without them the robot that has the ball
-    then decides otherwise: it shoots, passes to each team-mate, carries the ball on, or kicks it upfield. The
-    other team follows the log until the game has left it, then plays as it did or, in a league log, as
-    robobt's team. --scan looks for the moments at which another decision would have been worth most.
+    then decides otherwise: it shoots, passes to each team-mate, carries the ball on, kicks it upfield, or
+    plays as team_player. The other team follows the log until the game has left it, then plays as it did or,
+    in a league log, as robobt's team. --scan looks for the moments at which another decision would have been
+    worth most.
 
     Branches differ by small errors of start and execution. A branch ends when play is stopped. Its expected
     goals are those of its shots, and the chance of the best shot at its end, minus the opponents'.
@@ -173,7 +174,7 @@ def _at(
     from robobt.what_if import compare_decisions
     from robobt.what_if.compare import compared
     from robobt.what_if.decisions import decisions_of
-    from robobt.what_if.scan import nobody_decides
+    from robobt.what_if.moments import nobody_decides
     from robobt.world.game import Team
 
     tick = logged.tick(at)
@@ -254,8 +255,7 @@ def _scan(
     *,
     as_json: bool,
 ) -> str | None:
-    from robobt.what_if import scan
-    from robobt.what_if.scan import moments_of
+    from robobt.what_if import promising_moments, scan
     from robobt.world.game import Team
 
     ours = _team(team, [], Team.BLUE)
@@ -265,24 +265,23 @@ def _scan(
         logged.tick(search.begin)
     make_folders({"--out": search.out}, folders=True)
     branches = how.branches(logged)
+    moments = promising_moments(logged, ours, search.every, search.begin, search.end)
     with Progress("branches", 1) as progress:
         found = scan(
             logged,
             ours,
             branches,
-            every=search.every,
+            moments,
             count=search.moments,
             trials=trials,
             seed=how.seed,
-            begin=search.begin,
-            end=search.end,
             on_branch=progress.reach,
         )
-    searched = len(moments_of(logged, ours, search.every, search.begin, search.end))
+    searched = len(moments)
     found = [one for one in found if one.changed.gain is not None and one.changed.gain.mean >= _WORTH]
     replays = [_replay(branches, logged, one, ours, how.seed, search.out) for one in found]
     if as_json:
-        moments = [
+        listed = [
             {
                 "time": one.time,
                 "robot": str(one.decision.robot),
@@ -294,7 +293,7 @@ def _scan(
             for one, replay in zip(found, replays, strict=True)
         ]
         said = {"log": str(file), "team": ours.value, "seconds": how.seconds, "seed": how.seed}
-        print_json({**said, "moments": moments, "searched": searched})
+        print_json({**said, "moments": listed, "searched": searched})
         return branches.first_error
     if not searched:
         say(f"{file}: no field player of {ours.value} has the ball in play.")

@@ -12,5 +12,7 @@ from robobt.what_if.decisions import decisions_of as decisions_of
 from robobt.what_if.logged import LoggedMatch as LoggedMatch
 from robobt.what_if.logged import WhatIfError as WhatIfError
 from robobt.what_if.logged import load_logged as load_logged
+from robobt.what_if.moments import Moment as Moment
+from robobt.what_if.moments import promising_moments as promising_moments
 from robobt.what_if.scan import Found as Found
 from robobt.what_if.scan import scan as scan

@@ -6,8 +6,10 @@ from dataclasses import dataclass
 
 from robobt.match.players import Player, run_tree
 from robobt.plays.base import when
+from robobt.plays.team_player import team_player
 from robobt.skills.aim.aim_upfield import AimUpfield
 from robobt.skills.aim.pass_rater import PassRater
+from robobt.skills.aim.raters.expected_goal import ExpectedGoal
 from robobt.skills.aim.select_pass import SelectPass
 from robobt.skills.aim.select_shot import SelectShot
 from robobt.skills.ball.dribble_to import DribbleTo
@@ -15,6 +17,7 @@ from robobt.skills.ball.kick_to_target import KickToTarget
 from robobt.skills.conditions.has_ball import HasBall
 from robobt.skills.team.best_field_position import BestFieldPosition
 from robobt.tree import Behaviour, Status
+from robobt.what_if.standing import standing
 from robobt.world.command import RobotCommand
 from robobt.world.state import Frame, RobotId, RobotState
 
@@ -24,14 +27,17 @@ _LONGEST_TRY = 1.5
 _CARRIES = 1.0
 """How long a robot carries the ball when it decides to [s]."""
 
+_ANY_PASS = {"min_distance": 0.3, "lane_clearance": 0.0}
+"""Passes that are tried: nearly all, because branches show what becomes of them."""
+
 
 @dataclass(slots=True)
 class BallDecision:
-    """A decision of one robot: to shoot, pass, carry the ball on or kick it upfield.
+    """A decision of one robot: to shoot, pass, carry the ball on, kick it upfield or play as ``team_player``.
 
     Attributes:
         robot: the robot.
-        name: what it does: "shoot", "pass to N", "carry" or "clear".
+        name: what it does: "shoot", "pass to N", "carry", "clear" or "team_player".
         receiver: number of the receiver of a pass.
     """
 
@@ -44,12 +50,14 @@ class BallDecision:
         if self.name == "shoot":
             return when("shoot", SelectShot(rater="expected_goal"), KickToTarget(take=True))
         if self.receiver is not None:
-            rater = PassRater(receiver=self.receiver, min_distance=0.3, lane_clearance=0.0)
+            rater = PassRater(receiver=self.receiver, **_ANY_PASS)
             choose = SelectPass(rater=rater, min_score=0.0)
             return when("pass", choose, KickToTarget(take=True, pass_tolerance=0.06))
         if self.name == "carry":
             carry = DribbleTo(max_speed=1.5, max_distance=0.6, keep=0.25)
             return when("carry", HasBall(), BestFieldPosition(), carry)
+        if self.name == "team_player":
+            return team_player()
         return when("clear", AimUpfield(), KickToTarget(take=True))
 
     def begin(self, player: Player) -> None:
@@ -88,8 +96,8 @@ class BallDecision:
 def decisions_of(frame: Frame, robot: RobotId) -> list[BallDecision]:
     """Return the decisions that are tried for a robot with the ball.
 
-    They are a shot, a pass to each team-mate that is not the goalkeeper, to carry the ball on, and a kick
-    upfield.
+    They are a shot, a pass to each team-mate that is not the goalkeeper, to carry the ball on, a kick
+    upfield, and to play as ``team_player`` for a while.
 
     Args:
         frame: the frame, from any side.
@@ -99,4 +107,27 @@ def decisions_of(frame: Frame, robot: RobotId) -> list[BallDecision]:
     keeper = view.game.status(robot.team).keeper
     mates = [mate.id for mate in view.teammates(robot.number) if mate.id != keeper]
     passes = [BallDecision(robot, f"pass to {number}", number) for number in mates]
-    return [BallDecision(robot, "shoot"), *passes, BallDecision(robot, "carry"), BallDecision(robot, "clear")]
+    others = [BallDecision(robot, name) for name in ("carry", "clear", "team_player")]
+    return [BallDecision(robot, "shoot"), *passes, *others]
+
+
+def chances_of(frame: Frame, robot: RobotId, rater: ExpectedGoal) -> dict[str, float]:
+    """Return how likely a goal is by decisions of a robot with the ball, as raters see it, by their names.
+
+    For a shot, and for ``team_player``, that is the chance from here once the robot has turned. For a pass it
+    is half the receiver's chance from where it gets the ball times the safety of the pass
+    (:class:`PassRater`), because in branches passes come to about half of what shots come to that are rated
+    equal.
+
+    Args:
+        frame: the frame, from any side.
+        robot: the robot that has the ball.
+        rater: rates shots.
+    """
+    view = frame.seen_by(robot.team)
+    me = view.robot(robot.number)
+    assert me is not None, "it has the ball"
+    passes = PassRater(shot_rater=rater, shot_weight=1.0, **_ANY_PASS).rate_all(view, me)
+    chances = {f"pass to {one.receiver}": 0.5 * one.score for one in passes}
+    shot = standing(frame, rater, robot.team)
+    return {"shoot": shot, "team_player": shot, **chances}

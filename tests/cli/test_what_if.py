@@ -14,7 +14,7 @@ from robobt.cli import app
 from robobt.live.replay_html import is_replay
 from robobt.what_if import BallDecision, Branch, Branches, DecisionFigures, Found, load_logged
 from robobt.what_if.compare import MeanEstimate
-from robobt.what_if.scan import moments_of
+from robobt.what_if.moments import moments_of
 from robobt.world import RobotId, Team
 from robobt.world.rules import owner
 from tests.what_if.made import recorded

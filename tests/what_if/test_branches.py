@@ -12,8 +12,8 @@ import pytest
 from robobt.match.recording import load_recording
 from robobt.what_if import BallDecision, Branches, LoggedMatch, WhatIfError
 from robobt.what_if.errors import NO_ERRORS
+from robobt.what_if.moments import moments_of
 from robobt.what_if.pictured import ORIGINAL
-from robobt.what_if.scan import moments_of
 from robobt.world import RobotId, Team
 from robobt.world.game import OPEN_PLAY, GameState, RefereeCommand
 

@@ -11,9 +11,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from robobt.what_if import Branch, Branches, LoggedMatch, decisions_of, scan
+from robobt.what_if import Branch, Branches, LoggedMatch, Moment, decisions_of, promising_moments, scan
 from robobt.what_if.compare import MeanEstimate
-from robobt.what_if.scan import _short_time, moments_of
+from robobt.what_if.moments import _short_time, moments_of
 from robobt.world import Team
 from robobt.world.rules import owner
 
@@ -46,8 +46,10 @@ class Luck:
 
 
 def searched(branches: Any, seed: int, **options: Any) -> list[Any]:
-    given = {"every": 0.2, "count": 3, "trials": 20, "first": 2, "apart": 0.2, **options}
-    return scan(branches.logged, Team.BLUE, branches, seed=seed, **given)
+    given = {"count": 3, "trials": 20, "first": 2, "apart": 0.2, **options}
+    there = moments_of(branches.logged, Team.BLUE, given.pop("every", 0.2), end=given.pop("end", None))
+    moments = [Moment(tick, robot, {}) for tick, robot in there]
+    return scan(branches.logged, Team.BLUE, branches, moments, seed=seed, **given)
 
 
 def test_moments_are_where_a_field_player_gets_and_keeps_the_ball(logged: LoggedMatch) -> None:
@@ -92,7 +94,38 @@ def test_the_decisions_are_a_shot_passes_to_mates_carrying_and_a_clearance(logge
     tick, robot = moments_of(logged, Team.BLUE, 0.2)[0]
     mate = 2 if robot.number == 1 else 1
     names = [one.name for one in decisions_of(logged.recording.frame(tick), robot)]
-    assert names == ["shoot", f"pass to {mate}", "carry", "clear"]
+    assert names == ["shoot", f"pass to {mate}", "carry", "clear", "team_player"]
+
+
+def test_moments_that_promise_most_are_looked_at(logged: LoggedMatch) -> None:
+    there, often = promising_moments(logged, Team.BLUE, 5.0), promising_moments(logged, Team.BLUE, 0.1)
+    stretches = moments_of(logged, Team.BLUE, 5.0)
+    assert [one.robot for one in there] == [robot for _, robot in stretches]
+    assert any(one.tick > first for one, (first, _) in zip(there, stretches, strict=True))
+    for one, (first, _) in zip(there, stretches, strict=True):
+        frame = logged.recording.frame(one.tick)
+        assert owner(frame) == one.robot
+        assert one.chances.keys() <= {decision.name for decision in decisions_of(frame, one.robot)}
+        assert all(0.0 <= chance <= 1.0 for chance in one.chances.values())
+        same = [it for it in often if it.robot == one.robot and 0 <= it.tick - first < 300]
+        assert one.best >= 0.7 * max(it.best for it in same)
+    assert len(often) > len(there)
+
+
+def test_the_search_begins_with_what_raters_promise(logged: LoggedMatch) -> None:
+    tried: set[str] = set()
+
+    class Watched(Luck):
+        def play(self, seed: int, trial: int, **given: Any) -> Branch:
+            if given.get("decision") is not None:
+                tried.add(given["decision"].name)
+            return super().play(seed, trial, **given)
+
+    tick, robot = moments_of(logged, Team.BLUE, 0.2)[0]
+    promised = {"carry": 0.4, "clear": 0.3, "team_player": 0.2, "shoot": 0.1}
+    branches: Any = Watched(logged)
+    scan(logged, Team.BLUE, branches, [Moment(tick, robot, promised)])
+    assert tried == {"carry", "clear", "team_player"}
 
 
 def test_a_good_decision_is_found_first(logged: LoggedMatch) -> None:
