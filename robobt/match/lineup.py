@@ -117,8 +117,8 @@ def leave(view: Frame, me: RobotState, leaving: Collection[int]) -> RobotCommand
     """Drive off the field over the nearer touch line, next to the half-way line in the own half.
 
     ``leaving`` has the numbers of all robots that leave; on each side they stand in order of their numbers.
-    If the ball is near that place, they stand at the end of the substitution area, or over the other touch
-    line: beside the ball they could not stay during a stop, and others could not fetch it.
+    If the ball is near that place, they stand in the order from the end of the substitution area, or over the
+    other touch line: beside the ball they could not stay during a stop, and others could not fetch it.
     """
     field = view.field
     before = [
@@ -126,7 +126,7 @@ def leave(view: Frame, me: RobotState, leaving: Collection[int]) -> RobotCommand
     ]
     x = max(-SUBSTITUTION_REACH, -_BENCH_SPACING * (len(before) + 0.5))
     y = copysign((field.half_width + field.outer[1]) / 2, me.y)
-    places = (x, y), (ROBOT_RADIUS - SUBSTITUTION_REACH, y), (x, -y)
+    places = (x, y), (ROBOT_RADIUS - SUBSTITUTION_REACH - 0.5 * _BENCH_SPACING - x, y), (x, -y)
     ball = view.ball.position
     clear = (place for place in places if distance(place, ball) > _BENCH_CLEARANCE)
     return travel(view, me, next(clear, (x, y)), 0.0, me.limits, avoid_ball=True)

@@ -109,6 +109,14 @@ def test_a_robot_that_has_left_makes_way_for_the_ball(ball: tuple[float, float],
     assert (hypot(command.vx, command.vy) < 0.01) is stays
 
 
+def test_robots_that_make_way_for_the_ball_stand_apart() -> None:
+    ball, places = (-0.2, -2.55), ((-0.91, -3.15), (-0.61, -3.15))
+    team = tuple(robot(x, y, number=number) for number, (x, y) in enumerate(places, 4))
+    for me in team:
+        command = leave(replace(frame(team[0], ball), own=team), me, {4, 5})
+        assert hypot(command.vx, command.vy) < 0.05
+
+
 def test_a_robot_that_has_left_is_not_there_for_the_trees() -> None:
     controlled = Controlled()
     controlled.game = replace(controlled.game, blue=TeamStatus(max_robots=5))
