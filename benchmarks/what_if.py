@@ -17,7 +17,7 @@ from robobt.cli.common import errors
 from robobt.match.scenario.changes import changed
 from robobt.match.scenario.scenario import Scenario, load_scenario
 from robobt.skills.aim.raters.expected_goal import ExpectedGoal
-from robobt.statistics import clopper_pearson_interval
+from robobt.statistics import clopper_pearson_interval, wilson_interval
 from robobt.what_if import Branches, LoggedMatch, load_logged, promising_moments, scan
 from robobt.what_if.moments import moments_of
 from robobt.what_if.standing import standing
@@ -70,8 +70,8 @@ def what_if(
     how fast the last match itself was played and recorded. coverage: in how many moments what really followed
     lies inside the 90 % interval of branches in which nothing changed, for the ball's place at the end and
     for expected goals. mistakes: matches in which a robot with a good chance gives the ball to an opponent;
-    cost: expected goals that this costs, from branches of the match without the mistake; place: the mistake's
-    place in the list of the scan, 0 if it is not there; cpu_s: of the scan.
+    cost: expected goals that this costs, from branches of the match with the mistake that the scan does not
+    see; place: the mistake's place in the list of the scan, 0 if it is not there; cpu_s: of the scan.
     """
     found: dict[str, Any] = {}
     with tempfile.TemporaryDirectory() as folder:
@@ -101,7 +101,7 @@ def what_if(
     if mistakes:
         places = [one["place"] for one in found["mistakes"]]
         early = sum(0 < place <= 3 for place in places)
-        low, high = clopper_pearson_interval(early, len(places))
+        low, high = wilson_interval(early, len(places))
         share = f"{early} of {len(places)} ({low:.0%} to {high:.0%})"
         say(f"mistakes in the first three: {share}; places {places}")
 

@@ -116,8 +116,7 @@ def chances_of(frame: Frame, robot: RobotId, rater: ExpectedGoal) -> dict[str, f
 
     For a shot, and for ``team_player``, that is the chance from here once the robot has turned. For a pass it
     is half the receiver's chance from where it gets the ball times the safety of the pass
-    (:class:`PassRater`), because in branches passes come to about half of what shots come to that are rated
-    equal.
+    (:class:`PassRater`), because passes that are rated higher hardly come to more in branches.
 
     Args:
         frame: the frame, from any side.
