@@ -46,7 +46,7 @@ def train(
     out: Annotated[Path, option("--out", " the model", metavar="FOLDER")] = Path("out/models"),
     name: Annotated[str, option("--name", "; by default the predictor's")] = "",
     real: Annotated[Path | None, option("--real")] = None,
-    epochs: Annotated[int, option("--epochs", " shot_expected", min=1, max=10_000)] = 40,
+    epochs: Annotated[int, option("--epochs", " shot_expected", min=1, max=10_000)] = 60,
     seed: Annotated[int, option("--seed", min=0, max=MAX_SEED)] = 0,
     force: Annotated[bool, option("--force")] = False,
     as_json: Json = False,

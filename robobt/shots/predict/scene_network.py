@@ -17,7 +17,7 @@ from robobt.world.features import SCENE_HEAD, SCENE_OPPONENTS
 from robobt.world.geometry import FloatArray
 
 _INPUTS = 14
-_LAYER_WIDTH = 48
+_LAYER_WIDTH = 96
 _BATCH_SIZE, _FIRST_LEARNING_RATE, _WEIGHT_DECAY = 256, 3e-3, 0.1
 """Of the training: shots a step, learning rate of the first step, AdamW's decay."""
 

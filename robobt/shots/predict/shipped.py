@@ -46,7 +46,7 @@ def train_shipped(
     *,
     called: str = "",
     seed: int = 0,
-    epochs: int = 40,
+    epochs: int = 60,
     real: pa.Table | None = None,
     recorded: pa.Table | None = None,
     force: bool = False,
