@@ -193,7 +193,7 @@ HASHES = {
     "score_on_two_defenders_ppo": "2ce220fb",
     "shoot_ddpg": "ff248446",
     "shoot_robust": "5f2ca296",
-    "shot_expected": "d7447d8b",
+    "shot_expected": "7059ab1c",
     "shot_nn": "2e3e2505",
     "shot_nn_strong": "ae5b4add",
     "small3v3_ppo": "71432d71",
