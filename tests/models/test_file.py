@@ -243,8 +243,3 @@ def test_a_file_that_is_there_and_no_model_is_called_so(
     Path("words.onnx").write_text("words")
     with pytest.raises(ModelError, match="is not a robobt model file, or is damaged"):
         read_model_file("words.onnx")
-
-
-def test_a_model_whose_name_has_changed_is_told_by_its_name_now() -> None:
-    with pytest.raises(UnknownModelError, match="shot_expected_strong is shot_expected now"):
-        find_model("shot_expected_strong")

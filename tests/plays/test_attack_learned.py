@@ -4,7 +4,7 @@ import pytest
 import torch
 
 from paper.deployed import Situation, deployed_scenario
-from robobt.match import run_trials_in, summarise
+from robobt.match import load_scenario, run_trials_in, summarise
 from robobt.match.scenario.scenario import Scenario
 from robobt.models.file import ModelError
 from robobt.plays import attack_learned
@@ -29,6 +29,11 @@ def goals(scenario: Scenario, trials: int, seed: int = 91) -> int:
 def test_it_scores_nearly_always_where_attack_main_seldom_does(play: str, speed: str):
     assert goals(deployed_scenario(Situation(speed=speed), play), 8) >= 7
     assert goals(deployed_scenario(Situation(speed=speed), "attack_main"), 8) <= 5
+
+
+@pytest.mark.integration
+def test_attack_expected_scores_near_the_goal_too():
+    assert goals(load_scenario("score_on_goalkeeper"), 12, seed=977) >= 11
 
 
 @pytest.mark.parametrize("play", ["attack_nn", "attack_expected"])
