@@ -69,13 +69,21 @@ def collect(
     Keys of --json: out, shots, goals, success_rate, new, simulated_s, wall_s,
     real_time_factor, interrupted.
     """
+    from robobt.shots.collect.balanced import ROBOBULLS_GOALKEEPER
     from robobt.shots.collect.collect import PAPER_COUNT, collect_shots
     from robobt.shots.collect.plan import CollectionSettings
     from robobt.shots.keepers.population import REAL, read_population
 
     population = None
+    if goalkeepers == "robobulls" and not Path(ROBOBULLS_GOALKEEPER.partition(":")[0]).is_file():
+        there = "robobulls is played in a clone of the repository: run this in its folder"
+        raise typer.BadParameter(there, param_hint="--goalkeepers")
     if goalkeepers not in ("own", "robobulls"):
-        population = read_population(REAL if goalkeepers == "real" else Path(goalkeepers))
+        file = REAL if goalkeepers == "real" else Path(goalkeepers)
+        if not file.exists():
+            there = f"is own, robobulls, real or a file, and there is no file {goalkeepers!r}"
+            raise typer.BadParameter(there, param_hint="--goalkeepers")
+        population = read_population(file)
     settings = CollectionSettings(
         scenario=attack.value,
         protocol=protocol.value,

@@ -230,6 +230,9 @@ def _nothing(name: str) -> str:
     for kind in kinds:
         if problem := registry_of(kind).problem_with(name):
             return problem
+    if name in registry_of("challenges"):
+        lists = "'robobt list challenges' says what it is"
+        return f"{name!r} is a challenge; {lists}, 'robobt challenge {name}' plays it"
     models = [path.stem for folder in model_folders() for path in list_models(folder)]
     known = [*bundled_scenarios(), *models, *(one for kind in kinds for one in registry_of(kind))]
     meant = close_names(name, dict.fromkeys(known))

@@ -42,6 +42,8 @@ TYPOS = [
     ("show geometrical", "did you mean geometric?"),
     ("show Attack-Main", "did you mean attack_main"),
     ("show shot_n", "did you mean shot_nn"),
+    ("show obstacles", "'obstacles' is a challenge; "),
+    ("shots collect --goalkeepers robobull", "real or a file, and there is no file 'robobull'"),
     ("tournament run atack_main --against attack_nn", "Did you mean attack_main"),
     ("mtach", "Did you mean 'match'?"),
 ]
