@@ -96,6 +96,9 @@ def _read(file: Path, problems: Problems | None) -> ReadShots:
             table = _checked(_own_table(cells), file, rows, problems) if own else author_table(cells)
     except (OSError, UnicodeDecodeError, csv.Error, pa.ArrowException) as error:
         reason = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
+        if isinstance(error, FileNotFoundError):
+            # pyarrow's message is the path alone.
+            reason = "No such file or directory"
         raise ShotDataError(f"{file}: {' '.join(reason.split())}") from error
     if table.num_rows == 0 and not problems:
         raise ShotDataError(f"{file}: holds no shots")

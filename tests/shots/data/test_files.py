@@ -135,6 +135,12 @@ def test_files_that_hold_no_shots_are_refused_by_name(tmp_path: Path, name: str)
         read_shots(tmp_path / name)
 
 
+@pytest.mark.parametrize("name", ["none.csv", "none.parquet"])
+def test_a_file_that_is_not_there_is_told(tmp_path: Path, name: str):
+    with pytest.raises(ShotDataError, match=f"{name}: No such file"):
+        read_shots(tmp_path / name)
+
+
 def test_a_parquet_file_of_another_table_is_refused(table: pa.Table, tmp_path: Path):
     file = tmp_path / "shots.parquet"
     pq.write_table(table.drop_columns(["opp_x"]), file)
