@@ -107,6 +107,8 @@ def test_a_setting_of_a_rater_is_named_in_one_line(tmp_path: Path):
     misspelt = said(name="expected_goal", treshold=0.5)
     assert misspelt.startswith("treshold: there is no such field; ")
     assert misspelt.endswith("did you mean threshold?")
+    keeper = said(name="expected_goal", goalkeeper="quick")
+    assert keeper.startswith("goalkeeper: shot_expected knows no 'quick'; there are fitted, ")
     unknown = said(name="expected_gaol")
     assert unknown.startswith("name: no shot rater is called 'expected_gaol'; ")
     assert unknown.endswith("did you mean expected_goal?")

@@ -7,7 +7,7 @@ from typing import Self
 import numpy as np
 from pydantic import Field, model_validator
 
-from robobt.config.errors import unknown_name
+from robobt.config.errors import FieldError, unknown_name
 from robobt.models.find import read_fitting_model
 from robobt.skills.aim.goalkeeper_watch import GoalkeeperWatch
 from robobt.skills.aim.raters.base import RATERS, Chances, best_first
@@ -63,7 +63,7 @@ class ExpectedGoal(LearnedRater):
             names = [output.name for output in outputs]
             if self.goalkeeper not in names:
                 there = unknown_name(self.goalkeeper, names)
-                raise ValueError(f"goalkeeper: {self.model} knows no {self.goalkeeper!r}; {there}")
+                raise FieldError("goalkeeper", f"{self.model} knows no {self.goalkeeper!r}; {there}")
         return self
 
     def judge(
