@@ -25,6 +25,7 @@ from robobt.cli.options import option
 from robobt.cli.outputs import PAGE, RECORDING, check_ending, make_folders
 from robobt.cli.shown.what_if import print_decisions, print_moments
 from robobt.config.extras import need
+from robobt.config.wording import counted
 
 if TYPE_CHECKING:
     from robobt.what_if import Branches, Found, LoggedMatch
@@ -299,7 +300,8 @@ def _scan(
         say(f"{file}: no field player of {ours.value} has the ball in play.")
         return branches.first_error
     if not found:
-        say(f"{file}: {searched} moments searched; no other decision was worth {_WORTH:g} expected goals.")
+        many = counted(searched, "moment")
+        say(f"{file}: {many} searched; no other decision was worth {_WORTH:g} expected goals.")
         return branches.first_error
     say(f"{file}: moments at which another decision of {ours.value} would have been worth most")
     print_moments(found)

@@ -138,7 +138,7 @@ def train_shipped(
         held_out=figures,
         code_version=__version__,
         code_commit=source_commit(),
-        created_by=f"robobt shots train --model {name}",
+        created_by=f"robobt shots train --predictor {name}",
     )
     return export_model(module, card, folder, force=force)[0], figures
 
