@@ -50,7 +50,7 @@ def test_what_was_played_live_is_shown_again(monkeypatch: pytest.MonkeyPatch, tm
     assert live.hello["scenario"] == "striker_vs_goalkeeper"
     assert live.state["movable"]
     recorded = load_recording(path)
-    assert len(recorded) > 5
+    assert len(recorded) > 1
     again = seen_by(monkeypatch, lambda it: it.state.get("over"), "show", path, "--live")
     assert again.hello["seed"] == live.hello["seed"]
     assert again.state["span"] == [recorded.times[0], recorded.times[-1]]

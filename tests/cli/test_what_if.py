@@ -117,7 +117,7 @@ def test_a_moment_at_which_nobody_decides_is_refused_and_the_next_is_named(small
 
 def test_a_match_is_searched_and_each_moment_has_a_replay(small: Path) -> None:
     folder = small.with_name("moments")
-    options = ("--scan", "--trials", 2, "--moments", 2, "--every", 1.0, "--seconds", 0.3, "--to", 1.5)
+    options = ("--scan", "--trials", 2, "--moments", 2, "--every", 1.0, "--seconds", 0.5, "--to", 3)
     done = invoke(small, *options, "--out", folder, "--json")
     assert done.exit_code == 0, done.output
     moments = json.loads(done.stdout)["moments"]
