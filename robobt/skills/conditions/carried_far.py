@@ -50,7 +50,8 @@ class CarriedFar(Condition):
         """Measure."""
         frame, ball, me = self.frame, self.ball, self.me
         weak = me.limits.holds_straight < MAX_ACCELERATION
-        paused = not 0.0 <= frame.time - self._seen < (_PAUSE if weak else 2.5 * frame.period)
+        if not 0.0 <= frame.time - self._seen < (_PAUSE if weak else 2.5 * frame.period):
+            self._start, self._kept = None, -inf
         self._seen = frame.time
         touched = frame.last_touch
         if touched is not None and touched != RobotId(frame.team, me.id):
@@ -62,7 +63,7 @@ class CarriedFar(Condition):
             self._start = None
         if self._start is None and self._kept < frame.time:
             return self.fail("it has no ball")
-        if self._start is None or paused:
+        if self._start is None:
             if not (touches(me, ball) or has_ball(me, ball)):
                 return self.fail("it has no ball yet")
             self._start = ball.position

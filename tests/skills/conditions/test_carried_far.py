@@ -107,3 +107,16 @@ def test_a_weak_dribbler_s_short_pause_does_not_count_anew() -> None:
     alone = Alone(CarriedFar(limit=0.8))
     carry_weakly(alone, 0.0, 0.5, 0)
     assert carry_weakly(alone, 0.6, 0.8, 42) is Status.SUCCESS
+
+
+@pytest.mark.parametrize("limits", [RobotLimits(), WEAK])
+@pytest.mark.parametrize(("tick", "gap"), [(120, 0.15), (-600, 0.15), (-600, 3.0)])
+def test_after_a_pause_or_an_earlier_time_a_ball_that_it_does_not_touch_is_not_carried(
+    limits: RobotLimits, tick: int, gap: float
+) -> None:
+    alone = Alone(CarriedFar(limit=0.8))
+    carry_weakly(alone, 0.0, 0.9, 0)
+    me = replace(robot(1.5), limits=limits)
+    for step in range(3):
+        ball = (me.x + gap, 0.0)
+        assert alone.tick(frame(me, ball, time=(tick + step) * PERIOD)) is Status.FAILURE
