@@ -165,7 +165,8 @@ def _share_out(frame: Frame, team: TeamStore, plan: TeamPlan, players: list[Robo
     team.threats = []
     tasks = {} if team.attacker is None else {team.attacker: ATTACK}
     if plan.at_ball and frame.game.in_play:
-        tasks |= _assistants(plan, [robot.id for robot in players if robot.id not in tasks], len(tasks))
+        may = [robot.id for robot in players if robot.id not in tasks and robot.id != team.kicker]
+        tasks |= _assistants(plan, may, len(tasks))
     else:
         tasks |= _meant(frame, team, plan)
     free = [robot for robot in players if robot.id not in tasks]

@@ -72,6 +72,17 @@ def test_a_robot_assists_until_another_is_clearly_nearer() -> None:
     assert assistant(3.0, (-0.2, -0.2)) == 5
 
 
+def test_who_took_a_restart_does_not_go_for_the_ball_again() -> None:
+    agreement = Agreement()
+    agreement.team.plan.at_ball = 3
+    agreement.at(0.0, game=free_kick(Team.BLUE, (0.0, 0.0)))
+    plan = agreement.at(0.1)
+    assert agreement.team.kicker == 3
+    assert plan.tasks[3] not in (Task.ATTACK, Task.ASSIST)
+    assert [plan.tasks[number] for number in (4, 5)].count(Task.ATTACK) == 1
+    assert list(plan.tasks.values()).count(Task.ASSIST) == 2
+
+
 def test_a_pass_under_way_belongs_to_its_receiver() -> None:
     agreement = Agreement()
     team = agreement.team
