@@ -117,16 +117,17 @@ def leave(view: Frame, me: RobotState, leaving: Collection[int]) -> RobotCommand
     """Drive off the field over the nearer touch line, next to the half-way line in the own half.
 
     ``leaving`` has the numbers of all robots that leave; on each side they stand in order of their numbers.
-    If the ball is near that place, they stand in the order from the end of the substitution area, or over the
-    other touch line: beside the ball they could not stay during a stop, and others could not fetch it.
+    If the ball is near one of their places, they all stand in the order from the end of the substitution
+    area, or over the other touch line: beside the ball they could not stay during a stop, and others could
+    not fetch it.
     """
-    field = view.field
-    before = [
-        robot for robot in view.own if robot.id in leaving and robot.id < me.id and robot.y * me.y > 0.0
-    ]
-    x = max(-SUBSTITUTION_REACH, -_BENCH_SPACING * (len(before) + 0.5))
+    field, ball = view.field, view.ball.position
+    beside = [robot.id for robot in view.own if robot.id in leaving and robot.y * me.y > 0.0]
+    mine = sum(number < me.id for number in beside)
+    count = mine + 1 + sum(number > me.id for number in beside)
     y = copysign((field.half_width + field.outer[1]) / 2, me.y)
-    places = (x, y), (ROBOT_RADIUS - SUBSTITUTION_REACH - 0.5 * _BENCH_SPACING - x, y), (x, -y)
-    ball = view.ball.position
-    clear = (place for place in places if distance(place, ball) > _BENCH_CLEARANCE)
-    return travel(view, me, next(clear, (x, y)), 0.0, me.limits, avoid_ball=True)
+    row = [(max(-SUBSTITUTION_REACH, -_BENCH_SPACING * (place + 0.5)), y) for place in range(count)]
+    end = ROBOT_RADIUS - SUBSTITUTION_REACH - 0.5 * _BENCH_SPACING
+    rows = row, [(end - x, y) for x, _ in row], [(x, -y) for x, _ in row]
+    clear = (places for places in rows if all(distance(place, ball) > _BENCH_CLEARANCE for place in places))
+    return travel(view, me, next(clear, row)[mine], 0.0, me.limits, avoid_ball=True)

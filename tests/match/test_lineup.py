@@ -3,17 +3,21 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import combinations
 from math import hypot
 
 import pytest
 
-from robobt.match import MatchLoop, load_scenario
+from robobt.match import MatchLoop, lineup, load_scenario
 from robobt.match.lineup import leave
 from robobt.sim import SimWorld
 from robobt.testing import frame, robot
 from robobt.world import Frame, GameState, RefereeCommand, RobotId, Team
 from robobt.world.game import TeamStatus
+from robobt.world.geometry import Point, distance
 from robobt.world.protocol import World
+from robobt.world.rules import STOP_DISTANCE
+from robobt.world.state import ROBOT_RADIUS
 from robobt.worlds import sim_world
 
 pytestmark = pytest.mark.integration
@@ -115,6 +119,19 @@ def test_robots_that_make_way_for_the_ball_stand_apart() -> None:
     for me in team:
         command = leave(replace(frame(team[0], ball), own=team), me, {4, 5})
         assert hypot(command.vx, command.vy) < 0.05
+
+
+@pytest.mark.parametrize("x", [-1.4, -0.6, 0.1])
+def test_three_robots_that_make_way_for_the_ball_have_places_apart(
+    x: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    places: list[Point] = []
+    monkeypatch.setattr(lineup, "travel", lambda _view, _me, place, *_others, **_how: places.append(place))
+    team = tuple(robot(-0.3 * number, -2.9, number=number) for number in (3, 4, 5))
+    for me in team:
+        leave(replace(frame(team[0], (x, -2.9)), own=team), me, {3, 4, 5})
+    assert all(distance(*pair) > 2.0 * ROBOT_RADIUS for pair in combinations(places, 2))
+    assert all(distance(place, (x, -2.9)) > STOP_DISTANCE for place in places)
 
 
 def test_a_robot_that_has_left_is_not_there_for_the_trees() -> None:
