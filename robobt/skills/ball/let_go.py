@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from math import cos, sin
 
-from robobt.motion.dribbling import MAX_ACCELERATION
 from robobt.skills.base import Skill, skill
 from robobt.tree import Status
 from robobt.world.command import KickTrigger
@@ -25,7 +24,7 @@ class LetGo(Skill):
 
     Runs for as long as it is ticked. Braking alone soon separates the robot from a ball in its direction of
     travel, but a ball carried sideways would stay for up to another 0.5 m. In its own half, facing its own
-    goal, the robot only brakes; with a weak dribbler, which may have stopped with the ball, it backs away.
+    goal, the robot backs away from it instead: if it only braked, it could stop with the ball in its mouth.
     """
 
     def on_running(self) -> Status:
@@ -34,14 +33,14 @@ class LetGo(Skill):
         speed = push_speed(me, ball)
         if speed > 0.0 and keeps_ball(me, ball):
             command.kick_speed, command.kick_trigger = speed, KickTrigger.NOW
-        elif me.limits.holds_straight < MAX_ACCELERATION:
+        else:
             command.vx = -BACKING
         return self.run("letting go")
 
 
 @compilable
 def push_speed(me: Robot, ball: Ball, side: float = 1.0) -> float:
-    """Return the speed with which the kicker pushes the ball off [m/s]; 0 where the robot only brakes.
+    """Return the speed with which the kicker pushes the ball off [m/s]; 0 where it backs away.
 
     ``side`` is 1 for a team that attacks towards +x, -1 for one that attacks towards -x.
     """

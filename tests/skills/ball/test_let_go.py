@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from math import hypot, pi
 
 import pytest
@@ -10,7 +9,7 @@ import pytest
 from robobt.plays.base import first_of, when
 from robobt.skills import CarriedFar, LetGo, Stop
 from robobt.skills.base import Skill
-from robobt.testing import Trial, always, blue, frame, held, robot
+from robobt.testing import Trial, always, blue, eventually, frame, held, robot
 from robobt.testing.frames import HELD
 from robobt.tree import Behaviour, Status
 from robobt.world import Frame
@@ -25,6 +24,15 @@ class Sideways(Skill):
     def on_running(self) -> Status:
         command = self.store.command
         command.vy, command.dribbler = 2.0, True
+        return self.run()
+
+
+class Backwards(Skill):
+    """Pull the ball."""
+
+    def on_running(self) -> Status:
+        command = self.store.command
+        command.vx, command.dribbler = -0.8, True
         return self.run()
 
 
@@ -62,11 +70,17 @@ def test_it_does_not_kick_again_a_ball_that_has_left() -> None:
     assert alone.command.kick_speed == 0.0
 
 
-def test_a_weak_dribbler_backs_away_from_a_ball_that_it_must_not_kick() -> None:
-    alone, weak = Alone(LetGo()), RobotLimits(hold_acceleration=0.35, hold_straight=1.0)
-    me = replace(robot(-1.0, heading=pi, contact=True), limits=weak)
+@pytest.mark.parametrize("limits", [RobotLimits(), RobotLimits(hold_acceleration=0.35, hold_straight=1.0)])
+def test_it_backs_away_from_a_ball_that_it_must_not_kick(limits: RobotLimits) -> None:
+    alone, me = Alone(LetGo()), robot(-1.0, heading=pi, contact=True, limits=limits)
     alone.tick(frame(me, held(me)))
     assert (alone.command.vx, alone.command.kick_speed) == (-1.0, 0.0)
+
+
+def test_a_ball_that_is_pulled_out_of_the_own_half_is_let_go_of() -> None:
+    tree = first_of("pull", when("far", CarriedFar(limit=0.8), LetGo()), Backwards())
+    trial = Trial({blue(1): tree}, {blue(1): (-3.5, 0.0, pi)}, ball=(-3.5 - HELD, 0.0))
+    trial.run(2.0, eventually("gone", lambda seen: not keeps_ball(seen.own[0], seen.ball)))
 
 
 @pytest.mark.parametrize(("x", "kicks"), [(-1.0, False), (1.0, True)])
