@@ -490,6 +490,7 @@ class TestTree:
 
     def test_what_a_docstring_refers_to_is_shown_by_its_name(self):
         assert "Tick it after SelectPass in every" in robobt("show", "PassIsSteady").stdout
+        assert "the defaults of GoToBallSettings" in robobt("show", "go_to_ball").stdout
 
     def test_a_skill_is_told_to_be_one_where_parameters_are_given(self):
         said = " ".join(complaint("show", "KickToTarget:speed_factor=2", code=2).split())

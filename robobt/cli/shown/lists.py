@@ -76,7 +76,7 @@ def _skill(skills: Registry[type[Skill]], name: str) -> _Listed:
 
 
 def _task(tasks: Tasks, name: str) -> _Listed:
-    return _Listed(tasks.documentation(name), [])
+    return _Listed(_without_roles(tasks.documentation(name)), [])
 
 
 def _with_settings(registry: Registry[object], name: str) -> _Listed:
@@ -160,8 +160,12 @@ def _print(name: str, listed: _Listed, package: str | None, *, whole: bool) -> N
 
 
 def _doc(thing: object) -> str:
+    return _without_roles(inspect.getdoc(thing) or "")
+
+
+def _without_roles(docstring: str) -> str:
     """Return a docstring with the last names of what it refers to, without the roles of Sphinx."""
-    return re.sub(r":\w+:`~?(?:[\w.]+\.)?(\w+)`", r"\1", inspect.getdoc(thing) or "")
+    return re.sub(r":\w+:`~?(?:[\w.]+\.)?(\w+)`", r"\1", docstring)
 
 
 def _plain(value: object) -> object:
