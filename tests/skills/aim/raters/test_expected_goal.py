@@ -108,5 +108,5 @@ def test_what_a_match_says_of_the_goalkeeper_changes_what_a_shot_is_worth():
 
 
 def test_a_kind_of_goalkeeper_that_the_model_does_not_know_is_refused():
-    with pytest.raises(ValueError, match=r"goalkeeper.*'quick'.*full_speed"):
+    with pytest.raises(ValueError, match=r"shot_expected knows no 'quick'.*full_speed"):
         ExpectedGoal(goalkeeper="quick")
