@@ -17,6 +17,9 @@ FASTER = 1.0
 BACKING = 1.0
 """Speed with which a robot backs away from a ball that lies in its mouth [m/s]."""
 
+_STOPPED = 0.1
+"""A robot that drives ahead more slowly has stopped [m/s]."""
+
 
 @skill
 class LetGo(Skill):
@@ -24,7 +27,7 @@ class LetGo(Skill):
 
     Runs for as long as it is ticked. Braking alone soon separates the robot from a ball in its direction of
     travel, but a ball carried sideways would stay for up to another 0.5 m. In its own half, facing its own
-    goal, the robot backs away from it instead: if it only braked, it could stop with the ball in its mouth.
+    goal, the robot only brakes, and backs away once it has stopped: the ball may still be in its mouth.
     """
 
     def on_running(self) -> Status:
@@ -33,7 +36,7 @@ class LetGo(Skill):
         speed = push_speed(me, ball)
         if speed > 0.0 and keeps_ball(me, ball):
             command.kick_speed, command.kick_trigger = speed, KickTrigger.NOW
-        else:
+        elif cos(me.heading) * me.vx + sin(me.heading) * me.vy < _STOPPED:
             command.vx = -BACKING
         return self.run("letting go")
 
