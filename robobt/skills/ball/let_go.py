@@ -17,8 +17,8 @@ FASTER = 1.0
 BACKING = 1.0
 """Speed with which a robot backs away from a ball that lies in its mouth [m/s]."""
 
-_STOPPED = 0.1
-"""A robot that drives ahead more slowly has stopped [m/s]."""
+_BACKS_BELOW = 0.1
+"""A robot that drives ahead more slowly than this backs away [m/s]."""
 
 
 @skill
@@ -36,7 +36,7 @@ class LetGo(Skill):
         speed = push_speed(me, ball)
         if speed > 0.0 and keeps_ball(me, ball):
             command.kick_speed, command.kick_trigger = speed, KickTrigger.NOW
-        elif cos(me.heading) * me.vx + sin(me.heading) * me.vy < _STOPPED:
+        elif cos(me.heading) * me.vx + sin(me.heading) * me.vy < _BACKS_BELOW:
             command.vx = -BACKING
         return self.run("letting go")
 
