@@ -58,7 +58,12 @@ class MatchCapture:
         self._capture: Capture | None = None
         self._recorder: Recorder | None = None
         if record is not None:
-            self.get()
+            try:
+                self.get()
+            except BaseException:
+                # A signal that came while the file was begun.
+                self.close(None)
+                raise
 
     def get(self) -> Capture:
         """Return the capture, which takes every tick from now on."""

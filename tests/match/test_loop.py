@@ -1,5 +1,7 @@
 from __future__ import annotations
 
+import os
+import signal
 from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
@@ -10,10 +12,11 @@ import pytest
 from py_trees.common import Status
 
 from robobt.match import MatchLoop, MatchResult
-from robobt.match.recording import load_recording
+from robobt.match.recording import load_recording, recorder
 from robobt.match.referee.events import Decision, EventKind, RefereeEvent
 from robobt.match.refereeing import RefereeFactory, own_referee
 from robobt.match.scenario.scenario import Scenario, ScenarioError, scenario_from
+from robobt.signals import ending
 from robobt.world import Frame, RobotCommand, RobotId, Team
 from robobt.world.field import FieldGeometry
 from robobt.world.game import GameState, Stage
@@ -316,3 +319,19 @@ def test_what_the_worlds_own_referee_reports_is_counted_and_recorded(tmp_path: P
     assert (result.teams["blue"].fouls, result.teams["yellow"].fouls) == (1, 0)
     crashes = [event for event in load_recording(path).events if event.kind == "bot_crash_unique"]
     assert [(crash.team, crash.robot) for crash in crashes] == [(Team.BLUE, BLUE_0)]
+
+
+def test_a_signal_while_the_recording_is_begun_leaves_a_complete_file(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path, begun = tmp_path / "begun.robobt.arrows", recorder.new_stream
+
+    def told(*given: Any) -> Any:
+        os.kill(os.getpid(), signal.SIGINT)
+        return begun(*given)
+
+    monkeypatch.setattr(recorder, "new_stream", told)
+    with ending(), pytest.raises(KeyboardInterrupt):
+        MatchLoop(scenario(), 1, PlainWorld, path)
+    assert path.read_bytes().endswith(b"\xff\xff\xff\xff\x00\x00\x00\x00")
+    assert len(load_recording(path)) == 0
