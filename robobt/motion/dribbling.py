@@ -74,6 +74,11 @@ def carrying_limits(
     return dribbling_limits(max_speed, turn, max_acceleration, own.holds_straight)
 
 
+def holds_weakly(own: RobotLimits) -> bool:
+    """Return whether a robot's dribbler holds a ball at less than :data:`MAX_ACCELERATION`, even straight."""
+    return own.holds_straight < MAX_ACCELERATION
+
+
 def carrying_share(own: RobotLimits) -> float:
     """Return the share of :data:`MAX_ACCELERATION` at which a robot's dribbler holds the ball, 0 to 1."""
     return min(1.0, own.hold_acceleration / MAX_ACCELERATION)

@@ -6,7 +6,7 @@ from dataclasses import field
 from math import atan2, cos, hypot, inf, sin
 
 from robobt.motion.ball_watch import BallWatch
-from robobt.motion.dribbling import MAX_ACCELERATION
+from robobt.motion.dribbling import holds_weakly
 from robobt.motion.path_planner import travel
 from robobt.motion.pilot import roughly, travel_time
 from robobt.skills.ball.pick_up_ball import Grip, grab
@@ -147,7 +147,7 @@ class Intercept(DrivingSkill):
 def _arrival(me: RobotState, point: Point, ux: float, uy: float, limits: RobotLimits) -> float:
     dx, dy = point[0] + _MEETING_DISTANCE * ux - me.x, point[1] + _MEETING_DISTANCE * uy - me.y
     gap = hypot(dx, dy)
-    near = _NEAR_ENOUGH_WEAKLY if me.limits.holds_straight < MAX_ACCELERATION else _NEAR_ENOUGH
+    near = _NEAR_ENOUGH_WEAKLY if holds_weakly(me.limits) else _NEAR_ENOUGH
     if gap <= near:
         return 0.0
     return travel_time(gap - near, (me.vx * dx + me.vy * dy) / gap, limits)

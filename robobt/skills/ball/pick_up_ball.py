@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import field
 from math import atan2, cos, hypot, inf, pi, radians, sin
 
-from robobt.motion.dribbling import MAX_ACCELERATION, settle
+from robobt.motion.dribbling import holds_weakly, settle
 from robobt.motion.pilot import command, turn_rate
 from robobt.skills.base import Skill, skill
 from robobt.tree import Status
@@ -47,7 +47,7 @@ def grab(me: RobotState, ball: BallState, speed: float, period: float) -> RobotC
 
 def _pushes_on(me: RobotState, ball: BallState, speed: float) -> bool:
     """Return whether a robot with a weak dribbler, faster than ``speed`` [m/s], has the ball in its mouth."""
-    if me.limits.holds_straight >= MAX_ACCELERATION or me.speed <= speed or ball.z > 0.0:
+    if not holds_weakly(me.limits) or me.speed <= speed or ball.z > 0.0:
         return False
     dx, dy = ball.x - me.x, ball.y - me.y
     off = abs(wrap_angle(atan2(dy, dx) - me.heading))

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import field
 from math import hypot, inf
 
-from robobt.motion.dribbling import MAX_ACCELERATION
+from robobt.motion.dribbling import holds_weakly
 from robobt.skills.base import Condition, skill
 from robobt.tree import Status
 from robobt.world.compiled import compilable
@@ -31,10 +31,10 @@ class CarriedFar(Condition):
     (:func:`robobt.world.rules.keeps_ball`), so the distance that the ball rolls while the robot brakes away
     from it counts too. Tick it in every tick; a pause resets the count.
 
-    A weak dribbler, which does not hold the ball at :data:`~robobt.motion.dribbling.MAX_ACCELERATION`, often
-    loses it for a moment, or only seems to where frames are predicted, and the ball that it lets go rolls
-    before the robot. There the count ends when the ball has been away for 0.15 s, a pause of up to 0.3 s does
-    not reset it, and the distance until the robot no longer keeps the ball is added.
+    A weak dribbler (:func:`~robobt.motion.dribbling.holds_weakly`) often loses the ball for a moment, or only
+    seems to where frames are predicted, and a ball that it lets go rolls before the robot. There the count
+    ends when the ball has been away for 0.15 s, a pause of up to 0.3 s does not reset it, and the distance
+    until the robot no longer keeps the ball is added.
 
     Args:
         limit: carried distance from which it succeeds [m].
@@ -49,7 +49,7 @@ class CarriedFar(Condition):
     def on_running(self) -> Status:
         """Measure."""
         frame, ball, me = self.frame, self.ball, self.me
-        weak = me.limits.holds_straight < MAX_ACCELERATION
+        weak = holds_weakly(me.limits)
         if not 0.0 <= frame.time - self._seen < (_PAUSE if weak else 2.5 * frame.period):
             self._start, self._kept = None, -inf
         self._seen = frame.time

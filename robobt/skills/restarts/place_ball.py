@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import field
 from math import atan2, copysign, cos, hypot, inf, radians, sin, sqrt
 
-from robobt.motion.dribbling import MAX_ACCELERATION, settle
+from robobt.motion.dribbling import holds_weakly, settle
 from robobt.motion.path_planner import travel
 from robobt.motion.pilot import command, drive, turn_rate
 from robobt.skills.ball.dribble_to import SLIPPED
@@ -132,15 +132,14 @@ class PlaceBall(DrivingSkill):
                 goal[0] - _BALL_IN_MOUTH_DISTANCE * cos(outwards),
                 goal[1] - _BALL_IN_MOUTH_DISTANCE * sin(outwards),
             )
-            held = me.limits.holds_straight
-            fastest = _WEAK_PLACING_SPEED if held < MAX_ACCELERATION else _PLACING_SPEED
+            fastest = _WEAK_PLACING_SPEED if holds_weakly(me.limits) else _PLACING_SPEED
             self.store.command, doing = pull(
                 frame,
                 me,
                 self._holds(),
                 place,
                 self.drive_limits,
-                min(fastest, sqrt(2.0 * held * _STOPS_WITHIN)),
+                min(fastest, sqrt(2.0 * me.limits.holds_straight * _STOPS_WITHIN)),
                 placing=True,
                 sketch=self.draw,
             )
