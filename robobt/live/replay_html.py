@@ -11,8 +11,8 @@ from dataclasses import asdict
 from pathlib import Path
 
 from robobt.config.atomic import write_atomically
-from robobt.live.http import bundle, page_text
 from robobt.live.page_data import ChunkEncoder, header_data
+from robobt.live.page_files import bundle, page_text
 from robobt.match.recording import Recording, load_recording
 from robobt.match.recording.recording import Timeline
 from robobt.match.recording.statistics import recorded_statistics

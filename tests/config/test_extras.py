@@ -15,12 +15,13 @@ from robobt.config.extras import EXTRAS, MissingExtraError, missing_extra, need
 
 ROOT = Path(__file__).parents[2]
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
-LIGHT = f"""
+LIGHT = """
 import importlib.abc, json, sys
+missing = set(json.loads(sys.argv[2]))
 class Without(importlib.abc.MetaPathFinder):
     def find_spec(self, name, path=None, target=None):
-        if name.partition(".")[0] in {set(EXTRAS)!r}:
-            raise ModuleNotFoundError(f"No module named {{name!r}}", name=name)
+        if name.partition(".")[0] in missing:
+            raise ModuleNotFoundError(f"No module named {name!r}", name=name)
 sys.meta_path.insert(0, Without())
 from robobt.cli import main
 for command in json.loads(sys.argv[1]):
@@ -32,10 +33,41 @@ for command in json.loads(sys.argv[1]):
 """
 
 
-def light(*commands: str) -> list[tuple[str, int]]:
-    """Run commands one after the other in one process; what each prints as an error, and its exit status."""
+NAMES = {
+    "foxglove_schemas_protobuf": "foxglove-schemas-protobuf",
+    "google": "protobuf",
+    "mcap_protobuf": "mcap-protobuf-support",
+    "PIL": "pillow",
+    "sklearn": "scikit-learn",
+    "stable_baselines3": "stable-baselines3",
+}
+
+
+def distributions(extra: str) -> set[str]:
+    """Return the names of the distributions that an extra installs, those of the extras in it among them."""
+    names: set[str] = set()
+    for required in PROJECT["optional-dependencies"][extra]:
+        if required.startswith("robobt["):
+            inner = required.removeprefix("robobt[").rstrip("]").split(",")
+            names = names.union(*(distributions(each) for each in inner))
+        else:
+            names.add(re.split(r"[\[>=<]", required)[0])
+    return names
+
+
+def light(*commands: str, extra: str | None = None) -> list[tuple[str, int]]:
+    """Run commands one after the other in one process that has the packages of at most one extra.
+
+    Returns:
+        What each command prints as an error, and its exit status.
+    """
+    there = distributions(extra) if extra else set()
+    missing = [package for package in EXTRAS if NAMES.get(package, package) not in there]
     done = subprocess.run(
-        [sys.executable, "-c", LIGHT, json.dumps(commands)], capture_output=True, text=True, check=True
+        [sys.executable, "-c", LIGHT, json.dumps(commands), json.dumps(missing)],
+        capture_output=True,
+        text=True,
+        check=True,
     )
     errors = re.findall(r"(.*?)\0 (\d+)\n", done.stderr, re.DOTALL)
     assert len(errors) == len(commands), done.stderr
@@ -43,25 +75,30 @@ def light(*commands: str) -> list[tuple[str, int]]:
 
 
 def test_every_package_is_brought_by_the_extra_that_is_named() -> None:
-    extras = PROJECT["optional-dependencies"]
-    names = {
-        "foxglove_schemas_protobuf": "foxglove-schemas-protobuf",
-        "google": "protobuf",
-        "mcap_protobuf": "mcap-protobuf-support",
-        "PIL": "pillow",
-        "sklearn": "scikit-learn",
-        "stable_baselines3": "stable-baselines3",
-    }
     for package, extra in EXTRAS.items():
-        brought = {re.split(r"[\[>=<]", one)[0] for one in extras[extra]}
-        assert names.get(package, package) in brought
+        assert NAMES.get(package, package) in distributions(extra)
     base = {re.split(r"[\[>=<]", one)[0] for one in PROJECT["dependencies"]}
-    assert not base & {names.get(package, package) for package in EXTRAS}
+    assert not base & {NAMES.get(package, package) for package in EXTRAS}
 
 
 @pytest.mark.integration
 def test_a_light_installation_plays() -> None:
     ((error, status),) = light("match striker_vs_goalkeeper --trials 1 --json")
+    assert status == 0, error
+
+
+@pytest.mark.integration
+@pytest.mark.parametrize(
+    ("extra", "command"),
+    [
+        ("record", "match striker_vs_goalkeeper --trials 1 --record {0}/x.html"),
+        ("league", "serve striker_vs_goalkeeper --seconds 0.1"),
+        ("shots", "shots collect --count 2 --out {0}/x.parquet"),
+        ("learn", "evaluate go_to_ball_ddpg --starts 2"),
+    ],
+)
+def test_an_extra_brings_all_that_its_commands_need(extra: str, command: str, tmp_path: Path) -> None:
+    ((error, status),) = light(command.format(tmp_path), extra=extra)
     assert status == 0, error
 
 
