@@ -25,7 +25,7 @@ BEYOND = 0.5
 SLOP = 1e-4
 """Overlap that is not corrected [m]; Chipmunk's default is made for pixels."""
 
-_PLACED_OVERLAP, _PLACED_GAP = 1e-4, 2e-4
+_PLACED_OVERLAP, _PLACED_GAP = 1e-4, 3e-4
 """Overlap with a front that a placed ball may have, and its gap to the front where it has more [m]."""
 
 _HULL_CORNERS = 24

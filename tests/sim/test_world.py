@@ -120,6 +120,17 @@ def test_a_late_robot_keeps_the_ball_that_it_starts_with(name: str) -> None:
         assert world.truth().own[0].ball_contact
 
 
+@pytest.mark.parametrize("heading", [0.3 + 0.2 * turn for turn in range(15)])
+def test_a_robot_that_turns_takes_along_the_ball_that_it_starts_with(heading: float) -> None:
+    """A hinge takes a ball that is clear of the front, which rounding of the start must not decide."""
+    world = SimWorld(DIVISION_B, {ME: None}, preset("grsim"), 1 / 60)
+    x, y = 1.5 + 0.098 * cos(heading), 0.098 * sin(heading)
+    world.reset(Placement({ME: (1.5, 0.0, heading)}, (x, y, 0.0, 0.0)), seed=1)
+    for _ in range(40):
+        world.act({ME: RobotCommand(omega=-3.0, dribbler=True)})
+    assert world.truth().own[0].ball_contact
+
+
 def test_a_ball_that_touches_no_robot_starts_where_it_was_placed() -> None:
     world = SimWorld(DIVISION_B, {ME: None}, preset("grsim"), 1 / 60)
     for ball in ((0.1021, 0.0), (0.07, 0.08), (-0.13, 0.0)):
