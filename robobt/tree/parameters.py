@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import inspect
 import json
+import sys
 import types
 import typing
 from collections.abc import Callable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass
 from functools import lru_cache
+from pathlib import Path
 from typing import Annotated, Any
 
 from pydantic import BaseModel, ConfigDict, TypeAdapter, ValidationError
@@ -113,18 +115,57 @@ class Parameter:
 
 
 def parameters_of(builder: Callable[..., object]) -> list[Parameter]:
-    """Return the parameters that can be given by name, in the order of the signature."""
-    target: object = builder
-    # The fields of a dataclass have their types in the modules of the classes that they come from.
-    if inspect.isclass(builder) and "__dataclass_fields__" not in vars(builder):
-        target = builder.__init__
-    hints = typing.get_type_hints(target, include_extras=True)
+    """Return the parameters that can be given by name, in the order of the signature.
+
+    Raises:
+        ParameterError: the type of one cannot be read, as where it is imported for type checkers only.
+    """
     kinds = (inspect.Parameter.POSITIONAL_OR_KEYWORD, inspect.Parameter.KEYWORD_ONLY)
-    return [
-        Parameter(name, hints.get(name, Any), entry.default)
+    named = [
+        (name, entry.default)
         for name, entry in signature_of(builder).parameters.items()
         if entry.kind in kinds
     ]
+    hints = _hints_of(builder, {name for name, _ in named})
+    return [Parameter(name, hints.get(name, Any), default) for name, default in named]
+
+
+def _hints_of(builder: Callable[..., object], names: set[str]) -> dict[str, Any]:
+    """Return the types of the parameters with these names; no other type has to be readable."""
+    target: Any = builder
+    # The fields of a dataclass have their types in the modules of the classes that they come from.
+    if inspect.isclass(builder) and "__dataclass_fields__" not in vars(builder):
+        target = builder.__init__
+    # Types are users' code, and may raise anything; which one it was shows when they are read one by one.
+    with suppress(Exception):
+        return typing.get_type_hints(target, include_extras=True)
+    hints: dict[str, Any] = {}
+    for owner in reversed(target.__mro__) if inspect.isclass(target) else (target,):
+        known, local = (
+            (getattr(sys.modules.get(owner.__module__), "__dict__", {}), dict(vars(owner)))
+            if inspect.isclass(owner)
+            else (inspect.unwrap(owner).__globals__, None)
+        )
+        for name, hint in inspect.get_annotations(owner).items():
+            if name not in names:
+                continue
+            alone = types.SimpleNamespace(__annotations__={name: hint})
+            try:
+                hints |= typing.get_type_hints(alone, known, local, include_extras=True)
+            except Exception as error:
+                said = f"the type {hint!r} of {name!r} cannot be read: {type(error).__name__}: {error}"
+                raise ParameterError(name, f"{_place_of(builder)}{said}") from error
+    return hints
+
+
+def _place_of(builder: Callable[..., object]) -> str:
+    """Return file, line and name of a function or class, to begin a message with."""
+    found = inspect.unwrap(builder)
+    name = getattr(found, "__qualname__", repr(found))
+    try:
+        return f"{Path(inspect.getfile(found)).name}:{inspect.getsourcelines(found)[1]}: {name}: "
+    except (OSError, TypeError):
+        return f"{name}: "
 
 
 def check_parameters(

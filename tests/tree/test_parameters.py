@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Annotated, Any, Literal
 
 import pytest
@@ -120,3 +121,34 @@ def test_given_parameters_are_checked_against_a_signature() -> None:
 def test_a_value_is_said_on_one_line_and_short() -> None:
     assert short_repr("a\nb") == "'a\\nb'"
     assert len(short_repr("x" * 1000)) == 60
+
+
+def test_only_the_types_of_parameters_have_to_be_readable() -> None:
+    def play(*, speed: float = 1.0) -> Elsewhere:  # type: ignore[name-defined]  # noqa: F821
+        return speed
+
+    assert [str(each) for each in parameters_of(play)] == ["speed: float = 1.0"]
+
+
+def test_a_type_that_cannot_be_read_is_an_error_with_its_place() -> None:
+    def play(*, speed: float = 1.0, team: Elsewhere = 1) -> None:  # type: ignore[name-defined]  # noqa: F821
+        pass
+
+    line = play.__code__.co_firstlineno
+    said = rf"test_parameters\.py:{line}: .*play: the type 'Elsewhere' of 'team' cannot be read: NameError"
+    with pytest.raises(ParameterError, match=said) as refused:
+        parameters_of(play)
+    assert refused.value.parameter == "team"
+
+
+def test_a_type_that_cannot_be_read_is_named_in_a_dataclass_too() -> None:
+    @dataclass
+    class Base:
+        speed: float = 1.0
+
+    @dataclass
+    class Chase(Base):
+        team: Elsewhere | None = None  # type: ignore[name-defined]  # noqa: F821
+
+    with pytest.raises(ParameterError, match=r"Chase: the type 'Elsewhere \| None' of 'team'"):
+        parameters_of(Chase)

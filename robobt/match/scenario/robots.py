@@ -177,7 +177,7 @@ class RobotSetup(ScenarioPart):
             return self.params
         try:
             known = {parameter.name for parameter in parameters_of(find_play(play))}
-        except TreeFileError:
+        except (ParameterError, TreeFileError):
             return self.params
         return {name: value for name, value in self.params.items() if name.partition(".")[0] in known}
 
