@@ -147,14 +147,17 @@ class Feed:
 
         It is never further beyond the last capture than the latency that was measured: the
         delay that the timestamps show, that of the slower packets against the promptest, and
-        the time since the arrival.
+        the time since the arrival. Before the first capture it is the time of :meth:`now`.
         """
         now = self.now()
         captured, there = self.filter.captured, self.known.clock.at(self._clock())
-        if captured is None or there is None:
+        if captured is None:
             return now
         latency = self._delay + self.connection.latency + self.known.clock.jitter
         longest = min(_LONGEST_PREDICTION, latency + now - self.arrived)
+        if there is None:
+            # All packets had waited, as where this machine is too slow: only the captures show that clock.
+            return captured + longest
         return min(max(there + self.connection.latency, captured), captured + longest)
 
     def sign(self) -> float:

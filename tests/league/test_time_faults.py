@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from itertools import pairwise
 from math import inf, nan
 
 import pytest
@@ -121,3 +122,21 @@ def test_a_field_that_went_on_while_nobody_listened_was_not_restarted(
         world._feed.add(frame(now + away * 30.0, x=-2.0), now + away * gone_on)
     assert world._feed.filter.restarts == restarts
     assert list(world._feed.frame_at(world._feed.vision_now()).robots()) == [LEFT]
+
+
+@pytest.mark.parametrize("ahead", [1.8e9, -40.0])
+def test_a_machine_that_begins_too_slow_for_all_packets_does_not_jump_in_time(
+    ticking: tuple[LeagueWorld, Callable[[float], None]], ahead: float
+) -> None:
+    world, set_clock = ticking
+    times = []
+    for i in range(120):
+        now = 50.0 + i * PERIOD
+        set_clock(now)
+        world._feed.add(frame(now + ahead), now, waited=i < 60)
+        if i == 30:
+            world._restart_time()
+        world._look()
+        times.append(world._time)
+    assert times[-1] == pytest.approx(89 * PERIOD, abs=0.05)
+    assert max(after - before for before, after in pairwise(times[31:])) < 0.05
