@@ -71,6 +71,10 @@ else; found on fields other than the blind ones."""
 _RELAXED, _CLEARLY = 1.3, 20.0
 """A limit was met if the cost rises by this much when it is that many times as large."""
 
+_OTHER_TIMES, _OBEYING = (0.2, 0.4, 0.6, 0.8), 2.0
+"""Shifts of the commands, as shares of the play, and how many times as badly they then have to explain the
+motion. Robots that obey: 3 (goalkeepers under realistic noise) to 120; one that others drive: 1.1."""
+
 _MOST_LIMIT_ERROR, _MOST_TIME_ERROR = 0.1, 0.01
 """Half width of an interval beyond which a limit (relative) and a time [s] are not seen enough."""
 
@@ -114,7 +118,7 @@ def identify_robot(seen: Observations, robot: int) -> RobotEstimate:
     if known.sum() < 100 or not np.any(commands):
         return RobotEstimate(seen.robots[robot], {n: unseen(0, UNITS[n]) for n in DRIVE_PARAMETERS}, True)
 
-    def misses(p: FloatArray) -> FloatArray:
+    def misses(p: FloatArray, commands: FloatArray = commands) -> FloatArray:
         found = motion_after(p, times, poses, seen.sent, commands, trust, _PATIENCE)
         found[~mask] = np.nan
         return found
@@ -132,10 +136,29 @@ def identify_robot(seen: Observations, robot: int) -> RobotEstimate:
         if size < least:
             best, least = fitted, size
     scale = _scale(misses(best))
+    if not _obeys(misses, commands, best, scale):
+        return RobotEstimate(seen.robots[robot], {n: unseen(0, UNITS[n]) for n in DRIVE_PARAMETERS}, True)
     figures = _figures(misses, best, scale, times)
     delay = figures["delay"]
     whole = replace(delay, value=delay.value + seen.age, low=delay.low + seen.age, high=delay.high + seen.age)
     return RobotEstimate(seen.robots[robot], figures | {"delay": whole}, True)
+
+
+def _obeys(
+    misses: Callable[[FloatArray, FloatArray], FloatArray],
+    commands: FloatArray,
+    p: FloatArray,
+    scale: FloatArray,
+) -> bool:
+    """Return whether the commands say clearly more of the motion than the same commands at other times do.
+
+    They do not where somebody else drove the robot; then limits would be fitted to what is no answer to them.
+    """
+    costs = [
+        float(np.nansum(_cauchy(np.abs(misses(p, np.roll(commands, shift, axis=0)) / scale))[0]))
+        for shift in (0, *(round(share * len(commands)) for share in _OTHER_TIMES))
+    ]
+    return min(costs[1:]) > _OBEYING * costs[0]
 
 
 def _first(misses: Misses) -> FloatArray:

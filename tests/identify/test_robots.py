@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cache
+from math import sin
 
 import numpy as np
 import pytest
@@ -14,8 +16,12 @@ from robobt.identify.opponents import identify_opponent
 from robobt.identify.robots import RobotEstimate, identify_robot
 from robobt.sim import SimSettings
 from robobt.sim.realism import RealismSettings
+from robobt.world.command import RobotCommand
+from robobt.world.game import Team
 from robobt.world.limits import RobotLimits
-from tests.identify.made import driven
+from robobt.world.protocol import Placement
+from robobt.world.state import RobotId
+from tests.identify.made import PERIOD, Watched, driven
 
 pytestmark = pytest.mark.integration
 
@@ -118,3 +124,15 @@ def test_noise_and_gaps_are_known() -> None:
     assert found.robot_noise.value == pytest.approx(0.001, rel=0.1)
     assert found.heading_noise.value == pytest.approx(0.005, rel=0.1)
     assert found.missing_robot.value == pytest.approx(0.02, abs=0.008)
+
+
+def test_of_a_robot_that_somebody_else_drove_nothing_is_told() -> None:
+    robot = RobotId(Team.BLUE, 0)
+    watched = Watched({robot: LIMITS}, SimSettings())
+    watched.world.reset(Placement(robots={robot: (0.0, 0.0, 0.0)}, ball=(0.0, 2.9, 0.0, 0.0)), 0)
+    for tick in range(len(seen().times)):
+        t = tick * PERIOD
+        by_hand = RobotCommand(1.5 * sin(1.3 * t), 1.2 * sin(2.1 * t + 1.0), 4.0 * sin(0.9 * t))
+        watched.tick({robot: by_hand})
+    sent = replace(watched.observations(), commands=seen().commands[:, :1])
+    assert [name for name, figure in identify_robot(sent, 0).figures.items() if figure.seen] == []
