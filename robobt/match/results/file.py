@@ -17,6 +17,7 @@ from robobt import __version__
 from robobt.config.atomic import write_atomically
 from robobt.config.closing import Closing
 from robobt.config.errors import RobobtError, naming
+from robobt.config.only_writer import OnlyWriter
 from robobt.match.results.results import MatchResult, result_from
 from robobt.match.scenario.scenario import Scenario
 from robobt.plays.files import contents_of
@@ -62,7 +63,7 @@ class TrialsFile(Closing, Generic[R]):
         done: results that the file already held, by trial.
 
     Raises:
-        ResultsFileError: the file holds results of another run or other data.
+        ResultsFileError: the file holds results of another run or other data, or another run is writing it.
         OSError: it cannot be read or written.
     """
 
@@ -93,11 +94,16 @@ class TrialsFile(Closing, Generic[R]):
         # Reading a pipe or a device would never end.
         if self.path.exists() and not (self.path.is_file() or self.path.is_dir()):
             raise ResultsFileError(f"{self.path}: not an ordinary file, so it holds nothing to go on from")
-        kept = self._read(head) if self.path.exists() else 0
-        if kept:
-            with self.path.open("r+b") as file:
-                file.truncate(kept)
-        self._file: TextIO = self.path.open("a" if kept else "w", encoding="utf-8")
+        self._lock = OnlyWriter(self.path, ResultsFileError)
+        try:
+            kept = self._read(head) if self.path.exists() else 0
+            if kept:
+                with self.path.open("r+b") as file:
+                    file.truncate(kept)
+            self._file: TextIO = self.path.open("a" if kept else "w", encoding="utf-8")
+        except BaseException:
+            self._lock.close()
+            raise
         if not kept:
             try:
                 self._write(head)
@@ -107,7 +113,7 @@ class TrialsFile(Closing, Generic[R]):
 
     def close(self) -> None:
         """Close the file."""
-        with naming(self.path):
+        with self._lock, naming(self.path):
             self._file.close()
 
     def add(self, result: R) -> None:

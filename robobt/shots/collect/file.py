@@ -16,6 +16,7 @@ import pyarrow as pa
 
 from robobt import __version__
 from robobt.config.atomic import write_atomically
+from robobt.config.only_writer import OnlyWriter
 from robobt.shots.collect.plan import CollectionSettings
 from robobt.shots.data.files import csv_text, read_shots, write_shots
 from robobt.shots.data.schema import SCHEMA, SHOT_COLUMNS, SHOTS_VERSION, Row, ShotDataError
@@ -38,7 +39,7 @@ class CollectionFile:
         complete: whether they are all that was asked for the last time.
 
     Raises:
-        ShotDataError: the file holds something else.
+        ShotDataError: the file holds something else, or another run is writing it.
         OSError: it cannot be read or written.
     """
 
@@ -50,14 +51,23 @@ class CollectionFile:
         self.description = self.out.with_name(self.out.name + ".json")
         self.growing = self.out if self.out.suffix == ".csv" else self.out.with_name(self.out.name + ".csv")
         self.out.parent.mkdir(parents=True, exist_ok=True)
-        self.complete = self._known()
-        self.rows = self._read()
-        self._file = None if self.complete else self._open()
+        self._lock = OnlyWriter(self.out, ShotDataError)
+        try:
+            self.complete = self._known()
+            self.rows = self._read()
+            self._file = None if self.complete else self._open()
+        except BaseException:
+            self._lock.close()
+            raise
 
     def __enter__(self) -> CollectionFile:
         return self
 
     def __exit__(self, *_: object) -> None:
+        with self._lock:
+            self._close()
+
+    def _close(self) -> None:
         if self._file is not None:
             self._file.close()
             self._file = None
@@ -72,7 +82,7 @@ class CollectionFile:
 
     def finish(self, rows: list[Row]) -> None:
         """Write these rows, in their order, as the whole collection."""
-        self.__exit__()
+        self._close()
         write_shots(pa.Table.from_pylist(rows, schema=SCHEMA), self.out)
         if self.growing != self.out:
             self.growing.unlink(missing_ok=True)

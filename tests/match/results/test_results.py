@@ -1,4 +1,5 @@
 import json
+import sys
 from dataclasses import replace
 from pathlib import Path
 
@@ -144,6 +145,17 @@ class TestResultsFile:
         self.write(path, trial(0))
         with pytest.raises(ResultsFileError, match="holds results of referee 'own'"):
             ResultsFile(path, self.scenario, 0, None, "official")
+
+    @pytest.mark.skipif(sys.platform == "win32", reason="there are no such locks")
+    def test_two_runs_do_not_write_it_at_once(self, tmp_path: Path):
+        path = tmp_path / "results.jsonl"
+        with ResultsFile(path, self.scenario, 0) as file:
+            file.add(trial(0))
+            with pytest.raises(ResultsFileError, match=r"results\.jsonl: is being written by another run"):
+                ResultsFile(path, self.scenario, 0)
+            file.add(trial(1))
+        with ResultsFile(path, self.scenario, 0) as file:
+            assert sorted(file.done) == [0, 1]
 
     @pytest.mark.parametrize("cut", [1, 20, 200])
     def test_a_last_line_that_was_cut_is_dropped(self, tmp_path: Path, cut: int):

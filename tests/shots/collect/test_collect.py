@@ -1,4 +1,5 @@
 import json
+import sys
 from dataclasses import replace
 from pathlib import Path
 
@@ -7,6 +8,7 @@ import pytest
 
 from robobt.shots.collect.balanced import balanced_attempt
 from robobt.shots.collect.collect import PAPER_COUNT, CollectionError, collect_shots, play_trial
+from robobt.shots.collect.file import CollectionFile
 from robobt.shots.collect.paper import PARTS, SECTIONS, paper_attempt, splits
 from robobt.shots.collect.plan import CollectionSettings
 from robobt.shots.collect.watch import LateWorld, take_shot
@@ -266,3 +268,13 @@ def test_killed_with_workers_and_taken_up_with_others_it_is_the_same_collection(
     kill_after(start_python, path, 30, workers=2)
     collect_shots(SETTINGS, path, 80, workers=3)
     assert rows_of(path) == rows_of(collected)
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="there are no such locks")
+def test_two_runs_do_not_collect_in_one_file_at_once(tmp_path: Path):
+    path = tmp_path / "shots.parquet"
+    with (
+        CollectionFile(path, SETTINGS),
+        pytest.raises(ShotDataError, match="is being written by another run"),
+    ):
+        collect_shots(SETTINGS, path, 20)
