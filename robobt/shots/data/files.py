@@ -179,6 +179,18 @@ def _reals(cell: str) -> list[float]:
 _PARSERS: dict[str, Callable[[str], object]] = {"text": str, "int": _integer, "real": _real, "reals": _reals}
 
 
+_PLACES = ("robot_x", "robot_y", "ball_x", "ball_y", "target_x", "target_y", "distance_to_goal")
+_ANGLES = ("robot_heading", "angle_to_goal")
+_FARTHEST = 30.0
+"""Farther than anything on the largest field; in other units shots are [m]."""
+
+
+def _within(table: pa.Table, name: str, most: float) -> pa.ChunkedArray:
+    """Return which values of a column are at most this large; a value that is not known is."""
+    column = table.column(name)
+    return pc.fill_null(pc.or_(pc.is_nan(column), pc.less_equal(pc.abs(column), most)), True)
+
+
 def _checked(table: pa.Table, file: Path, rows: list[int], problems: Problems | None) -> pa.Table:
     """Return a table in :data:`SCHEMA`, its columns in order, after a look at what must not be missing."""
     for column in SHOT_COLUMNS:
@@ -201,6 +213,8 @@ def _checked(table: pa.Table, file: Path, rows: list[int], problems: Problems | 
         ),
         ("success", pc.is_in(success, pa.array([0, 1])), "is neither 1 nor 0"),
         ("distance_to_goal", pc.and_(pc.greater(distance, 0.0), pc.is_finite(distance)), "is not a distance"),
+        *[(name, _within(table, name, _FARTHEST), "is no place on a field, in metres") for name in _PLACES],
+        *[(name, _within(table, name, math.tau), "is no angle, in radians") for name in _ANGLES],
     ):
         for i in np.flatnonzero(~pc.fill_null(right, False).to_numpy()):
             value = table.column(name)[int(i)].as_py()

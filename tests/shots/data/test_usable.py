@@ -10,7 +10,7 @@ import pytest
 from typer.testing import CliRunner
 
 from robobt.cli import app
-from robobt.shots.data.files import read_usable_shots, write_shots
+from robobt.shots.data.files import read_shots, read_usable_shots, write_shots
 from robobt.shots.data.schema import ShotDataError
 from tests.shots.made_up import made_up_table
 
@@ -122,3 +122,22 @@ def test_a_predictor_is_judged_on_the_shots_that_give_what_it_needs(tmp_path: Pa
     assert "1 shot" in out
     assert said.count("lacks") == 10
     assert said.endswith("30 of 31 shots are left out, 20 of them not named")
+
+
+@pytest.mark.parametrize(
+    ("column", "value", "problem"),
+    [
+        ("ball_x", 1722.0, "is no place on a field, in metres"),
+        ("distance_to_goal", 3500.0, "is no place on a field, in metres"),
+        ("robot_heading", 45.0, "is no angle, in radians"),
+        ("angle_to_goal", -37.0, "is no angle, in radians"),
+    ],
+)
+def test_shots_in_other_units_are_refused(tmp_path: Path, column: str, value: float, problem: str) -> None:
+    table = made_up_table(3)
+    file = tmp_path / "shots.parquet"
+    values = table.column(column).to_pylist()
+    values[1] = value
+    write_shots(table.set_column(table.schema.names.index(column), column, pa.array(values)), file)
+    with pytest.raises(ShotDataError, match=f"row 3, column '{column}': {value} {problem}"):
+        read_shots(file)
