@@ -274,7 +274,8 @@ def log_packets(
 
     Keys of --json: vision, tracker, referee: packets written.
     """
-    from robobt.league.log.files import is_log, log_field
+    from robobt.league.log.files import log_field
+    from robobt.league.log.names import is_log
     from robobt.league.wire.endpoints import Endpoints
 
     if not is_log(out):

@@ -11,19 +11,17 @@ from typing import TYPE_CHECKING
 import typer
 
 from robobt.cli.outputs import RECORDING
+from robobt.league.log.names import is_log
 
 if TYPE_CHECKING:
     from robobt.match.recording import Recording
     from robobt.world import RobotId
 
-LOGS = (".log", ".log.gz")
-"""How the names of league logs end."""
-
 
 @contextmanager
 def recording_file(file: Path) -> Iterator[Path]:
     """Give the file itself, or a recording of what a league log holds."""
-    if not file.name.lower().endswith(LOGS):
+    if not is_log(file):
         yield file
         return
     from robobt.league.log.world import record_log

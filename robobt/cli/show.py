@@ -12,10 +12,10 @@ from robobt.cli.common import Imports, Json, complete_play, import_files
 from robobt.cli.option_groups.page import Page
 from robobt.cli.options import option
 from robobt.cli.outputs import RECORDING, make_folders
-from robobt.cli.recordings import LOGS
 from robobt.cli.shown.lists import REGISTERED, list_registered, registry_of
 from robobt.cli.shown.play import TREE_FORMATS, Examined, show_play
 from robobt.cli.shown.recording import RECORDING_FORMATS, Shown, show_recording
+from robobt.league.log.names import LOGS
 
 
 class ThingKind(StrEnum):

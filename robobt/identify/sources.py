@@ -10,7 +10,8 @@ import numpy as np
 from robobt.config.errors import RobobtError
 from robobt.identify.observations import CameraViews, Observations
 from robobt.identify.views import in_order, together
-from robobt.league.log.files import LogKind, is_log, read_log
+from robobt.league.log.files import LogKind, read_log
+from robobt.league.log.names import is_log
 from robobt.league.wire.packets import PacketCounts
 from robobt.league.wire.vision import CameraFrame, read_vision
 from robobt.match.recording import Recording, load_recording

@@ -18,4 +18,4 @@ if TYPE_CHECKING:
     from robobt.live.session import LOOK as LOOK
     from robobt.live.session import Live as Live
 else:
-    __getattr__, __dir__ = lazily(__name__, _HOMES)
+    __getattr__, __dir__ = lazily(__name__, _HOMES, needs=("live", "pyarrow", "websockets"))

@@ -17,4 +17,6 @@ if TYPE_CHECKING:
     from robobt.tournament.play import play_tournament as play_tournament
     from robobt.tournament.standings import standings_of as standings_of
 else:
-    __getattr__, __dir__ = lazily(__name__, _HOMES)
+    __getattr__, __dir__ = lazily(
+        __name__, _HOMES, needs=("tournament", "google.protobuf", "pyarrow", "scipy")
+    )

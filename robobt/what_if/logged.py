@@ -12,8 +12,7 @@ from typing import Any
 import numpy as np
 
 from robobt.config.errors import RobobtError
-from robobt.league.log.files import is_log
-from robobt.league.log.world import record_log
+from robobt.league.log.names import is_log
 from robobt.match.recording import Recording, load_recording
 from robobt.match.scenario.scenario import Scenario, scenario_from
 from robobt.world.game import OPEN_PLAY, STARTED, GameState, Team
@@ -127,6 +126,8 @@ def load_logged(path: str | Path, simulator: str | None = None) -> LoggedMatch:
     """
     path = Path(path)
     if is_log(path):
+        from robobt.league.log.world import record_log  # needs the extra league, which recordings do not
+
         with tempfile.TemporaryDirectory() as folder:
             recording = load_recording(record_log(path, Path(folder) / "log.robobt.arrows"))
         recording.path = path

@@ -15,22 +15,30 @@ from robobt.config.extras import EXTRAS, MissingExtraError, missing_extra, need
 
 ROOT = Path(__file__).parents[2]
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
-LIGHT = """
-import importlib.abc, json, sys
-missing = set(json.loads(sys.argv[2]))
-class Without(importlib.abc.MetaPathFinder):
-    def find_spec(self, name, path=None, target=None):
-        if name.partition(".")[0] in missing:
-            raise ModuleNotFoundError(f"No module named {name!r}", name=name)
-sys.meta_path.insert(0, Without())
+WITHOUT = """
+import json, sys
+missing = set(json.loads(sys.argv[1]))
+class Without:
+    def __init__(self, finder):
+        self.finder = finder
+    def find_spec(self, name, *others):
+        return None if name.partition(".")[0] in missing else self.finder.find_spec(name, *others)
+sys.meta_path[:] = [Without(finder) for finder in sys.meta_path]
+"""
+"""Makes the packages in the first argument look as if they were not installed."""
+
+LIGHT = (
+    WITHOUT
+    + """
 from robobt.cli import main
-for command in json.loads(sys.argv[1]):
+for command in json.loads(sys.argv[2]):
     sys.argv = ["robobt", *command.split()]
     try:
         main()
     except SystemExit as end:
         print(chr(0), end.code or 0, file=sys.stderr)
 """
+)
 
 
 NAMES = {
@@ -64,7 +72,7 @@ def light(*commands: str, extra: str | None = None) -> list[tuple[str, int]]:
     there = distributions(extra) if extra else set()
     missing = [package for package in EXTRAS if NAMES.get(package, package) not in there]
     done = subprocess.run(
-        [sys.executable, "-c", LIGHT, json.dumps(commands), json.dumps(missing)],
+        [sys.executable, "-c", LIGHT, json.dumps(missing), json.dumps(commands)],
         capture_output=True,
         text=True,
         check=True,
@@ -95,11 +103,65 @@ def test_a_light_installation_plays() -> None:
         ("league", "serve striker_vs_goalkeeper --seconds 0.1"),
         ("shots", "shots collect --count 2 --out {0}/x.parquet"),
         ("learn", "evaluate go_to_ball_ddpg --starts 2"),
+        ("record", "what-if {0}/m.robobt.arrows --at 2 --trials 2 --seconds 0.2"),
+        ("record", "record export {0}/m.robobt.arrows --out {0}/m.parquet"),
+        ("tournament", "record identify {0}/m.robobt.arrows --out {0}/field.yaml"),
+        (
+            "tournament",
+            "tournament run attack_main attack_nn --scenario duel --set ends.time_limit=0.5 --rounds 1 "
+            "--workers 0 --out {0}/t.sqlite",
+        ),
     ],
 )
 def test_an_extra_brings_all_that_its_commands_need(extra: str, command: str, tmp_path: Path) -> None:
-    ((error, status),) = light(command.format(tmp_path), extra=extra)
-    assert status == 0, error
+    commands = [command]
+    if "m.robobt.arrows" in command:
+        commands.insert(0, "match striker_vs_goalkeeper --trials 1 --record {0}/m.robobt.arrows")
+    for error, status in light(*[each.format(tmp_path) for each in commands], extra=extra):
+        assert status == 0, error
+
+
+def test_a_name_that_needs_an_extra_says_which() -> None:
+    code = (
+        WITHOUT
+        + """
+import pkgutil
+from importlib import import_module
+import robobt
+from robobt.config.extras import MissingExtraError
+said = {}
+for found in pkgutil.walk_packages(robobt.__path__, "robobt.", onerror=lambda name: None):
+    if not found.ispkg:
+        continue
+    try:
+        package = import_module(found.name)
+        for name in getattr(package, "_HOMES", ()):
+            try:
+                getattr(package, name)
+            except MissingExtraError as error:
+                said[f"{found.name}.{name}"] = str(error)
+    except MissingExtraError as error:
+        said[found.name] = str(error)
+print(json.dumps(said))
+"""
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", code, json.dumps([name for name in EXTRAS if name != "pyarrow"])],
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    said = json.loads(done.stdout)
+    for name, extra in {
+        "robobt.live.Live": "live",
+        "robobt.tournament.play_tournament": "tournament",
+        "robobt.tournament.standings_of": "tournament",
+        "robobt.learning": "learn",
+        "robobt.shots": "shots",
+        "robobt.league.wire": "league",
+    }.items():
+        assert f"robobt[{extra}]" in said.get(name, said.get(name.rpartition(".")[0], "")), name
+    assert "robobt.what_if" not in said
 
 
 @pytest.mark.integration

@@ -168,11 +168,6 @@ def _open(path: Path, mode: str) -> IO[bytes]:
     return cast(IO[bytes], path.open(mode))
 
 
-def is_log(path: str | Path) -> bool:
-    """Return whether a file is named as a league log."""
-    return Path(path).name.lower().endswith((".log", ".log.gz"))
-
-
 def log_field(
     path: str | Path, endpoints: Endpoints, interface: str | None = None, seconds: float | None = None
 ) -> dict[LogKind, int]:

@@ -16,7 +16,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from robobt.config.errors import RobobtError
-from robobt.league.log.files import LogError, LogKind, LogRecord, LogWriter, is_log, read_log
+from robobt.league.log.files import LogError, LogKind, LogRecord, LogWriter, read_log
+from robobt.league.log.names import is_log
 from robobt.league.log.world import LogWorld, record_log
 from robobt.league.serve.served_field import served_line_up
 from robobt.league.serve.server import SimServer
