@@ -128,8 +128,9 @@ def measured(probabilities: ArrayLike, scored: ArrayLike, prefix: str = "") -> d
     right = wilson_interval(round(judged.accuracy * judged.shots), judged.shots)
     losses = -np.where(goal, np.log(p), np.log1p(-p))
     loss = mean_interval(losses)
-    # One shot alone tells nothing about the others' losses: they may be any.
-    lowest, highest = (loss.low, loss.high) if len(losses) > 1 else (0.0, -float(np.log(_PROBABILITY_MARGIN)))
+    # Losses are bounded, and one shot alone tells nothing about the others': they may be any.
+    most = -float(np.log(_PROBABILITY_MARGIN))
+    lowest, highest = (max(0.0, loss.low), min(most, loss.high)) if len(losses) > 1 else (0.0, most)
     drawn = np.random.default_rng(0).integers(0, len(p), (RESAMPLES, len(p)))
     low, high = np.quantile([calibration_error(p[rows], goal[rows]) for rows in drawn], (0.025, 0.975))
     figures = {

@@ -65,6 +65,12 @@ def test_the_command_finds_what_the_card_says_about_the_real_shots(name: str):
         assert figures[figure]["value"] == pytest.approx(card[f"real_{figure}"].value, abs=1e-5)
 
 
+def test_the_interval_of_few_shots_holds_only_losses_that_are_possible() -> None:
+    loss = measured([0.99, 0.98, 0.6], [1, 1, 1])["log_loss"]
+    assert loss.low == 0.0
+    assert loss.value < loss.high
+
+
 def test_a_predictor_for_a_few_shots_rates_shots_in_play(tmp_path: Path):
     table = made_up_table(300)
     file, figures = train_shipped("shot_best", table, tmp_path, called="mine", real=made_up_table(80, seed=1))
