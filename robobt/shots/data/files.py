@@ -181,7 +181,7 @@ _PARSERS: dict[str, Callable[[str], object]] = {"text": str, "int": _integer, "r
 
 _PLACES = ("robot_x", "robot_y", "ball_x", "ball_y", "target_x", "target_y", "distance_to_goal")
 _ANGLES = ("robot_heading", "angle_to_goal")
-_FARTHEST = 30.0
+_PLACE_LIMIT = 30.0
 """Farther than anything on the largest field; in other units shots are [m]."""
 
 
@@ -213,7 +213,10 @@ def _checked(table: pa.Table, file: Path, rows: list[int], problems: Problems | 
         ),
         ("success", pc.is_in(success, pa.array([0, 1])), "is neither 1 nor 0"),
         ("distance_to_goal", pc.and_(pc.greater(distance, 0.0), pc.is_finite(distance)), "is not a distance"),
-        *[(name, _within(table, name, _FARTHEST), "is no place on a field, in metres") for name in _PLACES],
+        *[
+            (name, _within(table, name, _PLACE_LIMIT), "is no place on a field, in metres")
+            for name in _PLACES
+        ],
         *[(name, _within(table, name, math.tau), "is no angle, in radians") for name in _ANGLES],
     ):
         for i in np.flatnonzero(~pc.fill_null(right, False).to_numpy()):
