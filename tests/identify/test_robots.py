@@ -126,7 +126,7 @@ def test_noise_and_gaps_are_known() -> None:
     assert found.missing_robot.value == pytest.approx(0.02, abs=0.008)
 
 
-def test_of_a_robot_that_somebody_else_drove_nothing_is_told() -> None:
+def test_a_robot_that_somebody_else_drove_gets_no_figures() -> None:
     robot = RobotId(Team.BLUE, 0)
     watched = Watched({robot: LIMITS}, SimSettings())
     watched.world.reset(Placement(robots={robot: (0.0, 0.0, 0.0)}, ball=(0.0, 2.9, 0.0, 0.0)), 0)
